@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dowel/catalog/feature.h"
+#include "dowel/kernel/box.h"
+
+namespace dowel {
+
+/// The paper's classes of element shapes, by what its outer faces are.
+enum class ShapeClass : std::uint8_t { Block, Cylinder, BlockCylinder, Compound };
+
+/// What a facet belongs to (the paper's Table 1): a planar face, the curved wall of a hole, or
+/// anything else.
+enum class FacetClass : std::uint8_t { Plane, Hole, Other };
+
+struct TriangleCounts {
+  std::uint32_t total = 0;
+  std::uint32_t plane = 0;
+  std::uint32_t hole = 0;
+  std::uint32_t other = 0;
+};
+
+/// One catalogue entry without its heavy parts (facets, boundary representation), which the
+/// catalogue loads on demand. Lengths in mm, all in the element's frame.
+struct Element {
+  std::string name;    ///< unique in the catalogue: "H40-12/riser-80x80x40"
+  std::string family;  ///< what stands before the last '/' of the name; may be empty
+  std::string source;  ///< file that it was read from, as given to the build
+  std::string sha256;  ///< of that file, lower-case hex
+  std::string unit_in_file;  ///< "mm", "inch", "m", …
+  std::string licence;
+  ShapeClass shape = ShapeClass::Compound;
+  std::uint32_t solids = 0;
+  double volume_mm3 = 0.0;   ///< of the exact solid
+  double surface_mm2 = 0.0;  ///< of the exact solid
+  Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
+  Obb obb;  ///< smallest box found; contains the exact solid, not just its facets
+  TriangleCounts triangles;
+  double facet_error_mm = 0.0;  ///< largest over the faces
+  std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
+  std::vector<Feature> features;
+
+  /// The feature called `name`; nothing where there is none.
+  const Feature* find_feature(std::string_view feature_name) const;
+};
+
+}  // namespace dowel

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dowel/kernel/faceted_solid.h"
+
+namespace dowel {
+
+struct ImportOptions {
+  /// Linear deflection of the facets; 0: relative to the part's size (see io/README.md).
+  double deflection_mm = 0.0;
+  double angular_deflection_rad = 0.5;
+  /// Facets of one part are coarsened until they are fewer than this.
+  std::uint32_t max_triangles = 400'000;
+  /// True: all solids of the file become one part, placed as the file places them. False: each
+  /// distinct part of an assembly becomes a part of its own.
+  bool whole_file = false;
+  double max_seconds = 120.0;      ///< wall clock of the worker
+  std::size_t max_memory_mb = 4096;  ///< address space of the worker
+};
+
+/// One distinct part of a file, in its own frame.
+struct ImportedPart {
+  std::string name;  ///< product name as UTF-8, or the file's stem where it has no usable one
+  std::string unit_in_file;
+  FacetedSolid solid;
+  double volume_mm3 = 0.0;   ///< of the exact solid
+  double surface_mm2 = 0.0;  ///< of the exact solid
+  Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
+  std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
+  std::vector<std::byte> brep;  ///< OpenCascade's binary format; empty for mesh files
+};
+
+struct ImportResult {
+  enum class Status { Ok, Empty, Failed };
+  Status status = Status::Failed;
+  std::string reason;  ///< empty where Ok
+  std::vector<ImportedPart> parts;
+  double seconds = 0.0;
+};
+
+/// True for the file endings that `import_file` reads as STEP, as a mesh.
+bool is_step_file(const std::filesystem::path& file);
+bool is_mesh_file(const std::filesystem::path& file);
+
+/// Reads a STEP or mesh file. STEP is read in a child process with limits on time and memory: the
+/// reader crashes on damaged files and keeps global state. Never throws for a bad file: that is a
+/// Failed result. The child is forked: expects that no other thread of the process is running.
+ImportResult import_file(const std::filesystem::path& file, const ImportOptions& options);
+
+/// The same for many files, `jobs` children at a time. `on_done(i, result)` is called in the calling
+/// thread as each finishes, in the order of `files`; where it returns false no more are started.
+void import_files(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
+                  unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done);
+
+}  // namespace dowel

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dowel/kernel/faceted_solid.h"
+
+namespace dowel {
+
+/// First violation of FacetedSolid's invariants as one sentence that names the triangle, edge or
+/// vertex ("edge 12-57 is used by 1 triangle, expected 2: the mesh is open"); nothing where the
+/// solid is sound. O(n log n).
+std::optional<std::string> find_defect(const FacetedSolid& solid);
+
+/// Welds vertices with equal coordinates, drops triangles with two equal vertices and vertices
+/// that no triangle uses. Order is kept. Faces, edges and face_of stay consistent.
+void weld(FacetedSolid& solid);
+
+/// Turns every closed component that encloses negative volume inside out, unless it is a cavity
+/// (it lies inside another component of the same solid).
+void orient_outward(FacetedSolid& solid);
+
+}  // namespace dowel

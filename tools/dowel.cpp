@@ -1,0 +1,30 @@
+// The dowel program: picks the subcommand and turns what goes wrong into exit codes.
+
+#include <cstdio>
+#include <exception>
+
+#include "commands.h"
+#include "dowel/kernel/error.h"
+
+int main(int argc, char** argv) {
+  namespace tools = dowel::tools;
+  int exit_code = tools::kDone;
+  try {
+    CLI::App app("Designs modular fixtures: catalogue, placement, collision checks, exports.",
+                 "dowel");
+    app.set_version_flag("--version", "dowel " DOWEL_VERSION);
+    app.require_subcommand(0, 1);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? tools::kDone : tools::kUsage;
+    }
+    return exit_code;
+  } catch (const dowel::Error& error) {
+    std::fprintf(stderr, "dowel: error: %s\n", error.what());
+    return tools::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "dowel: internal error: %s\n", error.what());
+    return tools::kInternal;
+  }
+}
