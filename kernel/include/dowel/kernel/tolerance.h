@@ -16,11 +16,41 @@ inline constexpr double kParallel_rad = 1.0e-7;
 /// A quaternion read from outside may miss unit length by this much (FORMATS: scene files).
 inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 
+/// A direction or box axis read from a catalogue may miss unit length, and a right angle, by this
+/// much (a ratio): rounding of any writer, far below what shows on a part.
+inline constexpr double kUnitVectorSlack = 1.0e-6;
+
 /// Default tolerance between contact and interference, and between clear and contact.
 inline constexpr double kDefaultTolerance_mm = 0.01;
 
 /// Smallest tolerance accepted: a thousand times the rounding of a pose at 10 m.
 inline constexpr double kMinTolerance_mm = 1.0e-6;
+
+/// Pictures: faces that meet at less than this run into each other without a visible edge. A degree,
+/// as for Convexity::Smooth.
+inline constexpr double kTangent_rad = 0.0175;
+
+/// Pictures: neighbouring facets of one free-form face that turn more than this meet at a crease. 40
+/// degrees: more than the facets of a curved face turn (up to 0.5 rad), less than any bevel.
+inline constexpr double kCrease_rad = 0.7;
+
+static_assert(kTangent_rad < kCrease_rad);
+/// Two placed axes are one where they miss each other by no more than this: what a screw in its
+/// clearance never notices, and far less than half the difference of two thread sizes.
+inline constexpr double kCoaxial_mm = 0.02;
+
+/// Placed directions closer than this are parallel: 0.01 mm over 100 mm.
+inline constexpr double kCoaxial_rad = 1.0e-4;
+
+/// A shaft may be thicker than its hole by this much, a micrometre: files carry nominal sizes.
+inline constexpr double kShaftExcess_mm = 1.0e-3;
+
+/// A cylinder this close to a nominal diameter stands for its thread; a ground pin (g6: 6 um and
+/// more below nominal) does not.
+inline constexpr double kThreadNominalSlack_mm = 5.0e-3;
+
+/// A bore may miss the range from minor diameter to tap drill by this much and be a core hole.
+inline constexpr double kTapDrillSlack_mm = 0.05;
 
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
