@@ -52,6 +52,15 @@ inline constexpr double kThreadNominalSlack_mm = 5.0e-3;
 /// A bore may miss the range from minor diameter to tap drill by this much and be a core hole.
 inline constexpr double kTapDrillSlack_mm = 0.05;
 
+/// A catalogue's box contains its element within this: a micrometre, well under any tolerance of a
+/// verdict, and a share of the part's size for the rounding of the box's axes.
+inline constexpr double kBoxSlack_mm = 1.0e-3;
+inline constexpr double kBoxSlackRatio = 1.0e-9;
+
+/// An element's exact volume and the volume of its facets may differ by this share of it besides
+/// what the facet error explains: CAD kernels integrate free-form faces no better.
+inline constexpr double kVolumeSlackRatio = 1.0e-3;
+
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
 
