@@ -13,6 +13,10 @@ inline constexpr double kCoincident_mm = 1.0e-4;
 /// Directions closer than this are parallel when features are recognised: 0.1 um over 1 m.
 inline constexpr double kParallel_rad = 1.0e-7;
 
+/// Unit vectors of surfaces may miss unit length by this much: at the 100 m of kMaxCoordinate_mm
+/// that is 0.1 um, what kCoincident_mm forgives.
+inline constexpr double kUnitVectorSlack = 1.0e-9;
+
 /// A quaternion read from outside may miss unit length by this much (FORMATS: scene files).
 inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 
@@ -25,6 +29,9 @@ inline constexpr double kDefaultTolerance_mm = 0.01;
 
 /// Smallest tolerance accepted: a thousand times the rounding of a pose at 10 m.
 inline constexpr double kMinTolerance_mm = 1.0e-6;
+
+/// Largest tolerance accepted: beyond it whole parts would count as touching.
+inline constexpr double kMaxTolerance_mm = 10.0;
 
 /// Pictures: faces that meet at less than this run into each other without a visible edge. A degree,
 /// as for Convexity::Smooth.
