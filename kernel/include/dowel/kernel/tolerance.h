@@ -22,7 +22,7 @@ inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 
 /// A direction or box axis read from a catalogue may miss unit length, and a right angle, by this
 /// much (a ratio): rounding of any writer, far below what shows on a part.
-inline constexpr double kUnitVectorSlack = 1.0e-6;
+inline constexpr double kStoredAxisSlack = 1.0e-6;
 
 /// Default tolerance between contact and interference, and between clear and contact.
 inline constexpr double kDefaultTolerance_mm = 0.01;
