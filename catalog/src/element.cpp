@@ -1,12 +1,118 @@
 #include "dowel/catalog/element.h"
 
 #include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <set>
+
+#include "dowel/kernel/check.h"
+#include "dowel/kernel/tolerance.h"
 
 namespace dowel {
+namespace {
+
+bool is_unit(const Eigen::Vector3d& vector) {
+  // Written so that NaN is not of unit length.
+  return std::abs(vector.norm() - 1.0) <= kStoredAxisSlack;
+}
+
+bool is_rotation(const Eigen::Matrix3d& axes) {
+  const double error =
+      (axes.transpose() * axes - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return error <= kStoredAxisSlack && axes.determinant() > 0.0;
+}
+
+bool are_sizes(std::initializer_list<double> values) {
+  return std::ranges::all_of(values, [](double v) { return std::isfinite(v) && v >= 0.0; });
+}
+
+std::optional<std::string> find_defect(const HoleSegment& segment) {
+  if (!are_sizes({segment.diameter_mm, segment.diameter_end_mm})) {
+    return "a segment's diameter is not a finite size";
+  }
+  if (!std::isfinite(segment.from_mm) || !std::isfinite(segment.to_mm) ||
+      segment.to_mm < segment.from_mm) {
+    return "a segment does not end below its start";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> find_defect(const Feature& feature) {
+  if (!feature.origin.allFinite()) return "its origin is not finite";
+  if (!is_unit(feature.direction)) return "its direction is not of unit length";
+  if (!are_sizes({feature.diameter_mm, feature.depth_mm, feature.area_mm2})) {
+    return "its diameter, depth or area is not a finite size";
+  }
+  for (const HoleSegment& segment : feature.segments) {
+    if (auto defect = find_defect(segment)) return defect;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 const Feature* Element::find_feature(std::string_view feature_name) const {
   const auto found = std::ranges::find(features, feature_name, &Feature::name);
   return found == features.end() ? nullptr : &*found;
+}
+
+std::string_view to_string(ShapeClass shape) {
+  switch (shape) {
+    case ShapeClass::Block:
+      return "block";
+    case ShapeClass::Cylinder:
+      return "cylinder";
+    case ShapeClass::BlockCylinder:
+      return "block-cylinder";
+    case ShapeClass::Compound:
+      return "compound";
+  }
+  DOWEL_EXPECTS(false && "a known shape class");
+  return {};
+}
+
+std::string_view to_string(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::Hole:
+      return "hole";
+    case FeatureKind::Shaft:
+      return "shaft";
+    case FeatureKind::Face:
+      return "face";
+    case FeatureKind::Slot:
+      return "slot";
+  }
+  DOWEL_EXPECTS(false && "a known feature kind");
+  return {};
+}
+
+std::string_view to_string(HoleSegment::Type type) {
+  return type == HoleSegment::Type::Cylinder ? "cylinder" : "cone";
+}
+
+std::optional<std::string> find_defect(const Element& element) {
+  if (element.name.empty()) return "its name is empty";
+  if (!are_sizes({element.volume_mm3, element.surface_mm2, element.facet_error_mm})) {
+    return "its volume, surface or facet error is not a finite size";
+  }
+  if (!element.center_of_mass.allFinite()) return "its centre of mass is not finite";
+  if (!element.obb.center.allFinite()) return "its box is not at a finite place";
+  if (!is_rotation(element.obb.axes)) return "its box has axes that are not orthonormal";
+  const Eigen::Vector3d& half = element.obb.half_extents_mm;
+  if (!are_sizes({half.x(), half.y(), half.z()})) return "its box has no finite size";
+  if (element.colour &&
+      !are_sizes({(*element.colour)[0], (*element.colour)[1], (*element.colour)[2]})) {
+    return "its colour is not finite";
+  }
+  std::set<std::string_view> names;
+  for (const Feature& feature : element.features) {
+    if (feature.name.empty()) return "a feature has no name";
+    if (!names.insert(feature.name).second) {
+      return "two features are called \"" + feature.name + "\"";
+    }
+    if (auto defect = find_defect(feature)) return "feature \"" + feature.name + "\": " + *defect;
+  }
+  return std::nullopt;
 }
 
 }  // namespace dowel

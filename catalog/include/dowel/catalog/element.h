@@ -29,10 +29,10 @@ struct TriangleCounts {
 /// One catalogue entry without its heavy parts (facets, boundary representation), which the
 /// catalogue loads on demand. Lengths in mm, all in the element's frame.
 struct Element {
-  std::string name;    ///< unique in the catalogue: "H40-12/riser-80x80x40"
-  std::string family;  ///< what stands before the last '/' of the name; may be empty
-  std::string source;  ///< file that it was read from, as given to the build
-  std::string sha256;  ///< of that file, lower-case hex
+  std::string name;          ///< unique in the catalogue: "H40-12/riser-80x80x40"
+  std::string family;        ///< what stands before the last '/' of the name; may be empty
+  std::string source;        ///< file that it was read from, as given to the build
+  std::string sha256;        ///< of that file, lower-case hex
   std::string unit_in_file;  ///< "mm", "inch", "m", …
   std::string licence;
   ShapeClass shape = ShapeClass::Compound;
@@ -42,12 +42,27 @@ struct Element {
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
   Obb obb;  ///< smallest box found; contains the exact solid, not just its facets
   TriangleCounts triangles;
-  double facet_error_mm = 0.0;  ///< largest over the faces
+  double facet_error_mm = 0.0;                  ///< largest over the faces
   std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
   std::vector<Feature> features;
 
   /// The feature called `name`; nothing where there is none.
   const Feature* find_feature(std::string_view feature_name) const;
 };
+
+/// "block", "cylinder", "block-cylinder" or "compound".
+std::string_view to_string(ShapeClass shape);
+
+/// "hole", "shaft", "face" or "slot".
+std::string_view to_string(FeatureKind kind);
+
+/// "cylinder" or "cone".
+std::string_view to_string(HoleSegment::Type type);
+
+/// First reason why `element` cannot be used as it stands, as one sentence that names the field or
+/// feature: a number that is not finite, a negative size, a box whose axes are not orthonormal, a
+/// direction that is not of unit length, two features of one name. Nothing where it is sound.
+/// Whether its numbers agree with its mesh is another question (see lint.h).
+std::optional<std::string> find_defect(const Element& element);
 
 }  // namespace dowel

@@ -1,0 +1,327 @@
+#include "element_rows.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dowel/kernel/error.h"
+
+namespace dowel {
+namespace {
+
+constexpr const char* kInsertElement = R"(
+  INSERT INTO element (source_id, position, name, family, unit_in_file, licence, shape, solids,
+    volume_mm3, surface_mm2, center_of_mass_x, center_of_mass_y, center_of_mass_z,
+    obb_center_x, obb_center_y, obb_center_z, obb_axis_1_x, obb_axis_1_y, obb_axis_1_z,
+    obb_axis_2_x, obb_axis_2_y, obb_axis_2_z, obb_axis_3_x, obb_axis_3_y, obb_axis_3_z,
+    obb_half_1_mm, obb_half_2_mm, obb_half_3_mm, triangles, plane_triangles, hole_triangles,
+    other_triangles, facet_error_mm, red, green, blue)
+  VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?))";
+
+constexpr const char* kSelectElement = R"(
+  SELECT element.id, name, family, path, sha256, unit_in_file, licence, shape, solids,
+    volume_mm3, surface_mm2, center_of_mass_x, center_of_mass_y, center_of_mass_z,
+    obb_center_x, obb_center_y, obb_center_z, obb_axis_1_x, obb_axis_1_y, obb_axis_1_z,
+    obb_axis_2_x, obb_axis_2_y, obb_axis_2_z, obb_axis_3_x, obb_axis_3_y, obb_axis_3_z,
+    obb_half_1_mm, obb_half_2_mm, obb_half_3_mm, triangles, plane_triangles, hole_triangles,
+    other_triangles, facet_error_mm, red, green, blue
+  FROM element JOIN source ON source.id = source_id WHERE name = ?)";
+
+constexpr const char* kInsertFeature = R"(
+  INSERT INTO feature (element_id, position, name, kind, origin_x, origin_y, origin_z,
+    direction_x, direction_y, direction_z, diameter_mm, depth_mm, through, blind_end, entry,
+    area_mm2, faces)
+  VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?))";
+
+constexpr const char* kSelectFeatures = R"(
+  SELECT name, kind, origin_x, origin_y, origin_z, direction_x, direction_y, direction_z,
+    diameter_mm, depth_mm, through, blind_end, entry, area_mm2, faces, position
+  FROM feature WHERE element_id = ? ORDER BY position)";
+
+constexpr const char* kInsertSegment = R"(
+  INSERT INTO hole_segment (element_id, feature_position, position, type, diameter_mm,
+    diameter_end_mm, from_mm, to_mm)
+  VALUES (?,?,?,?,?,?,?,?))";
+
+constexpr const char* kSelectSegments = R"(
+  SELECT type, diameter_mm, diameter_end_mm, from_mm, to_mm, feature_position
+  FROM hole_segment WHERE element_id = ? ORDER BY feature_position, position)";
+
+/// Binds the parameters of a statement from the first on.
+class RowWriter {
+ public:
+  explicit RowWriter(SQLite::Statement& statement) : statement_(statement) { statement_.reset(); }
+
+  RowWriter& operator<<(std::int64_t value) { return bind(value); }
+  RowWriter& operator<<(std::uint32_t value) { return bind(std::int64_t{value}); }
+  RowWriter& operator<<(double value) { return bind(value); }
+  RowWriter& operator<<(std::string_view value) { return bind(std::string(value)); }
+  RowWriter& operator<<(const Eigen::Vector3d& value) {
+    return bind(value.x()).bind(value.y()).bind(value.z());
+  }
+  RowWriter& null() {
+    statement_.bind(next_++);
+    return *this;
+  }
+  void execute() { statement_.exec(); }
+
+ private:
+  template <class Value>
+  RowWriter& bind(const Value& value) {
+    statement_.bind(next_++, value);
+    return *this;
+  }
+
+  SQLite::Statement& statement_;
+  int next_ = 1;
+};
+
+/// Reads the columns of a row from the first on and checks each: damage can put anything anywhere.
+class RowReader {
+ public:
+  /// `place` begins every complaint.
+  RowReader(SQLite::Statement& statement, const std::string& place)
+      : statement_(statement), place_(place) {}
+
+  std::string text() {
+    const SQLite::Column column = next();
+    if (!column.isText()) fail(column, "a text");
+    return column.getString();
+  }
+  double real() {
+    const SQLite::Column column = next();
+    if (!column.isFloat()) fail(column, "a number");
+    return column.getDouble();
+  }
+  std::optional<double> optional_real() {
+    const SQLite::Column column = next();
+    if (column.isNull()) return std::nullopt;
+    if (!column.isFloat()) fail(column, "a number or nothing");
+    return column.getDouble();
+  }
+  Eigen::Vector3d vector() {
+    const double x = real();
+    const double y = real();
+    const double z = real();
+    return {x, y, z};
+  }
+  std::int64_t integer() {
+    const SQLite::Column column = next();
+    if (!column.isInteger()) fail(column, "a whole number");
+    return column.getInt64();
+  }
+  std::uint32_t count() {
+    const SQLite::Column column = statement_.getColumn(next_);
+    const std::int64_t value = integer();
+    if (value < 0 || value > std::numeric_limits<std::uint32_t>::max()) fail(column, "a count");
+    return static_cast<std::uint32_t>(value);
+  }
+  /// The one of `values` whose to_string the column holds.
+  template <class Enum, std::size_t N>
+  Enum one_of(const std::array<Enum, N>& values) {
+    const SQLite::Column column = statement_.getColumn(next_);
+    const std::string name = text();
+    for (const Enum value : values) {
+      if (to_string(value) == name) return value;
+    }
+    fail(column, "a known word");
+  }
+  /// A list of indices as "[1,2,3]".
+  std::vector<std::uint32_t> indices() {
+    const SQLite::Column column = statement_.getColumn(next_);
+    const std::string list = text();
+    std::vector<std::uint32_t> result;
+    if (list == "[]") return result;
+    const char* at = list.data();
+    const char* const end = at + list.size();
+    char expected = '[';
+    while (at != end && *at == expected) {
+      std::uint32_t value = 0;
+      const auto [rest, problem] = std::from_chars(at + 1, end, value);
+      if (problem != std::errc()) break;
+      result.push_back(value);
+      at = rest;
+      expected = ',';
+    }
+    if (result.empty() || end - at != 1 || *at != ']') fail(column, "a list of face numbers");
+    return result;
+  }
+
+ private:
+  SQLite::Column next() { return statement_.getColumn(next_++); }
+
+  [[noreturn]] void fail(const SQLite::Column& column, const char* expected) const {
+    throw Error(ErrorCode::FileMalformed,
+                place_ + ": column " + column.getName() + ": expected " + expected);
+  }
+
+  SQLite::Statement& statement_;
+  const std::string& place_;
+  int next_ = 0;
+};
+
+std::string list_of(const std::vector<std::uint32_t>& indices) {
+  std::string list = "[";
+  for (const std::uint32_t index : indices) {
+    if (list.size() > 1) list += ',';
+    list += std::to_string(index);
+  }
+  return list + "]";
+}
+
+void insert_segments(SQLite::Database& database, std::int64_t element_id, std::int64_t position,
+                     const std::vector<HoleSegment>& segments) {
+  SQLite::Statement statement(database, kInsertSegment);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const HoleSegment& segment = segments[i];
+    RowWriter row(statement);
+    row << element_id << position << static_cast<std::int64_t>(i) << to_string(segment.type)
+        << segment.diameter_mm << segment.diameter_end_mm << segment.from_mm << segment.to_mm;
+    row.execute();
+  }
+}
+
+void insert_features(SQLite::Database& database, std::int64_t element_id,
+                     const std::vector<Feature>& features) {
+  SQLite::Statement statement(database, kInsertFeature);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const Feature& feature = features[i];
+    const auto position = static_cast<std::int64_t>(i);
+    RowWriter row(statement);
+    row << element_id << position << feature.name << to_string(feature.kind) << feature.origin
+        << feature.direction << feature.diameter_mm << feature.depth_mm
+        << std::int64_t{feature.through ? 1 : 0} << feature.blind_end << feature.entry
+        << feature.area_mm2 << list_of(feature.faces);
+    row.execute();
+    insert_segments(database, element_id, position, feature.segments);
+  }
+}
+
+/// The features of an element, and the position of each, which segments refer to.
+struct FeatureRows {
+  std::vector<Feature> features;
+  std::vector<std::int64_t> positions;
+};
+
+FeatureRows select_features(SQLite::Database& database, std::int64_t element_id,
+                            const std::string& place) {
+  SQLite::Statement statement(database, kSelectFeatures);
+  statement.bind(1, element_id);
+  FeatureRows rows;
+  while (statement.executeStep()) {
+    RowReader row(statement, place);
+    Feature feature;
+    feature.name = row.text();
+    feature.kind = row.one_of(
+        std::array{FeatureKind::Hole, FeatureKind::Shaft, FeatureKind::Face, FeatureKind::Slot});
+    feature.origin = row.vector();
+    feature.direction = row.vector();
+    feature.diameter_mm = row.real();
+    feature.depth_mm = row.real();
+    feature.through = row.integer() != 0;
+    feature.blind_end = row.text();
+    feature.entry = row.text();
+    feature.area_mm2 = row.real();
+    feature.faces = row.indices();
+    rows.positions.push_back(row.integer());
+    rows.features.push_back(std::move(feature));
+  }
+  return rows;
+}
+
+void select_segments(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+                     const std::string& place) {
+  SQLite::Statement statement(database, kSelectSegments);
+  statement.bind(1, element_id);
+  std::size_t i = 0;
+  while (statement.executeStep()) {
+    RowReader row(statement, place);
+    HoleSegment segment;
+    segment.type = row.one_of(std::array{HoleSegment::Type::Cylinder, HoleSegment::Type::Cone});
+    segment.diameter_mm = row.real();
+    segment.diameter_end_mm = row.real();
+    segment.from_mm = row.real();
+    segment.to_mm = row.real();
+    const std::int64_t position = row.integer();
+    while (i < rows.positions.size() && rows.positions[i] < position) ++i;
+    if (i == rows.positions.size() || rows.positions[i] != position) {
+      throw Error(ErrorCode::FileMalformed, place + ": a hole segment belongs to no feature");
+    }
+    rows.features[i].segments.push_back(segment);
+  }
+}
+
+}  // namespace
+
+std::int64_t insert_element(SQLite::Database& database, std::int64_t source_id,
+                            std::int64_t position, const Element& element) {
+  SQLite::Statement statement(database, kInsertElement);
+  RowWriter row(statement);
+  row << source_id << position << element.name << element.family << element.unit_in_file
+      << element.licence << to_string(element.shape) << element.solids << element.volume_mm3
+      << element.surface_mm2 << element.center_of_mass << element.obb.center;
+  for (int axis = 0; axis < 3; ++axis) row << Eigen::Vector3d(element.obb.axes.col(axis));
+  row << element.obb.half_extents_mm << element.triangles.total << element.triangles.plane
+      << element.triangles.hole << element.triangles.other << element.facet_error_mm;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (element.colour) {
+      row << (*element.colour)[i];
+    } else {
+      row.null();
+    }
+  }
+  row.execute();
+  const std::int64_t id = database.getLastInsertRowid();
+  insert_features(database, id, element.features);
+  return id;
+}
+
+std::optional<Element> select_element(SQLite::Database& database, std::string_view name,
+                                      std::string_view file) {
+  SQLite::Statement statement(database, kSelectElement);
+  statement.bind(1, std::string(name));
+  if (!statement.executeStep()) return std::nullopt;
+
+  const std::string place =
+      std::string(file) + ": is damaged: element \"" + std::string(name) + "\"";
+  RowReader row(statement, place);
+  const std::int64_t id = row.integer();
+  Element element;
+  element.name = row.text();
+  if (element.name != name) throw Error(ErrorCode::FileMalformed, place + ": is indexed wrongly");
+  element.family = row.text();
+  element.source = row.text();
+  element.sha256 = row.text();
+  element.unit_in_file = row.text();
+  element.licence = row.text();
+  element.shape = row.one_of(std::array{ShapeClass::Block, ShapeClass::Cylinder,
+                                        ShapeClass::BlockCylinder, ShapeClass::Compound});
+  element.solids = row.count();
+  element.volume_mm3 = row.real();
+  element.surface_mm2 = row.real();
+  element.center_of_mass = row.vector();
+  element.obb.center = row.vector();
+  for (int axis = 0; axis < 3; ++axis) element.obb.axes.col(axis) = row.vector();
+  element.obb.half_extents_mm = row.vector();
+  element.triangles.total = row.count();
+  element.triangles.plane = row.count();
+  element.triangles.hole = row.count();
+  element.triangles.other = row.count();
+  element.facet_error_mm = row.real();
+  const std::optional<double> red = row.optional_real();
+  const std::optional<double> green = row.optional_real();
+  const std::optional<double> blue = row.optional_real();
+  if (red && green && blue) element.colour = {*red, *green, *blue};
+
+  FeatureRows rows = select_features(database, id, place);
+  select_segments(database, id, rows, place);
+  element.features = std::move(rows.features);
+  if (const auto defect = find_defect(element)) {
+    throw Error(ErrorCode::FileMalformed, place + ": " + *defect);
+  }
+  return element;
+}
+
+}  // namespace dowel

@@ -1,0 +1,115 @@
+#pragma once
+
+// The catalogue file's tables. Internal to the store.
+
+#include <array>
+#include <cstdint>
+
+namespace dowel {
+
+/// "DWLC" in the database header: tells a catalogue from any other SQLite file.
+inline constexpr std::int32_t kCatalogApplicationId = 0x44574C43;
+
+/// Grows with every change of the tables below.
+inline constexpr std::int32_t kCatalogVersion = 1;
+
+struct SchemaTable {
+  const char* name;
+  const char* sql;  ///< as sqlite_schema keeps it, to the letter
+};
+
+/// Every table that a catalogue of this version has. `element`, `feature` and `hole_segment` are
+/// columns rather than documents so that rules can be written over them in SQL.
+inline constexpr std::array<SchemaTable, 5> kCatalogTables{{
+    {"source", R"(CREATE TABLE source (
+  id INTEGER PRIMARY KEY,
+  path TEXT NOT NULL UNIQUE,
+  sha256 TEXT NOT NULL,
+  settings TEXT NOT NULL,
+  status TEXT NOT NULL CHECK (status IN ('ok', 'empty', 'failed')),
+  reason TEXT NOT NULL
+) STRICT)"},
+    {"element", R"(CREATE TABLE element (
+  id INTEGER PRIMARY KEY,
+  source_id INTEGER NOT NULL REFERENCES source (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL UNIQUE,
+  family TEXT NOT NULL,
+  unit_in_file TEXT NOT NULL,
+  licence TEXT NOT NULL,
+  shape TEXT NOT NULL CHECK (shape IN ('block', 'cylinder', 'block-cylinder', 'compound')),
+  solids INTEGER NOT NULL,
+  volume_mm3 REAL NOT NULL,
+  surface_mm2 REAL NOT NULL,
+  center_of_mass_x REAL NOT NULL,
+  center_of_mass_y REAL NOT NULL,
+  center_of_mass_z REAL NOT NULL,
+  obb_center_x REAL NOT NULL,
+  obb_center_y REAL NOT NULL,
+  obb_center_z REAL NOT NULL,
+  obb_axis_1_x REAL NOT NULL,
+  obb_axis_1_y REAL NOT NULL,
+  obb_axis_1_z REAL NOT NULL,
+  obb_axis_2_x REAL NOT NULL,
+  obb_axis_2_y REAL NOT NULL,
+  obb_axis_2_z REAL NOT NULL,
+  obb_axis_3_x REAL NOT NULL,
+  obb_axis_3_y REAL NOT NULL,
+  obb_axis_3_z REAL NOT NULL,
+  obb_half_1_mm REAL NOT NULL,
+  obb_half_2_mm REAL NOT NULL,
+  obb_half_3_mm REAL NOT NULL,
+  triangles INTEGER NOT NULL,
+  plane_triangles INTEGER NOT NULL,
+  hole_triangles INTEGER NOT NULL,
+  other_triangles INTEGER NOT NULL,
+  facet_error_mm REAL NOT NULL,
+  red REAL,
+  green REAL,
+  blue REAL,
+  UNIQUE (source_id, position)
+) STRICT)"},
+    {"feature", R"(CREATE TABLE feature (
+  element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('hole', 'shaft', 'face', 'slot')),
+  origin_x REAL NOT NULL,
+  origin_y REAL NOT NULL,
+  origin_z REAL NOT NULL,
+  direction_x REAL NOT NULL,
+  direction_y REAL NOT NULL,
+  direction_z REAL NOT NULL,
+  diameter_mm REAL NOT NULL,
+  depth_mm REAL NOT NULL,
+  through INTEGER NOT NULL CHECK (through IN (0, 1)),
+  blind_end TEXT NOT NULL,
+  entry TEXT NOT NULL,
+  area_mm2 REAL NOT NULL,
+  faces TEXT NOT NULL,
+  PRIMARY KEY (element_id, position),
+  UNIQUE (element_id, name)
+) STRICT, WITHOUT ROWID)"},
+    {"hole_segment", R"(CREATE TABLE hole_segment (
+  element_id INTEGER NOT NULL,
+  feature_position INTEGER NOT NULL,
+  position INTEGER NOT NULL,
+  type TEXT NOT NULL CHECK (type IN ('cylinder', 'cone')),
+  diameter_mm REAL NOT NULL,
+  diameter_end_mm REAL NOT NULL,
+  from_mm REAL NOT NULL,
+  to_mm REAL NOT NULL,
+  PRIMARY KEY (element_id, feature_position, position),
+  FOREIGN KEY (element_id, feature_position) REFERENCES feature (element_id, position)
+    ON DELETE CASCADE
+) STRICT, WITHOUT ROWID)"},
+    {"content", R"(CREATE TABLE content (
+  element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
+  kind TEXT NOT NULL CHECK (kind IN ('facets', 'brep')),
+  checksum INTEGER NOT NULL,
+  bytes BLOB NOT NULL,
+  UNIQUE (element_id, kind)
+) STRICT)"},
+}};
+
+}  // namespace dowel
