@@ -68,6 +68,24 @@ inline constexpr double kBoxSlackRatio = 1.0e-9;
 /// what the facet error explains: CAD kernels integrate free-form faces no better.
 inline constexpr double kVolumeSlackRatio = 1.0e-3;
 
+/// Import: facets of STEP parts deviate by a thousandth of the part's diagonal, but no less than 5 um
+/// (twice what matters at the default tolerance, halved again by the mesher) and no more than 0.1 mm.
+inline constexpr double kMinDeflection_mm = 0.005;
+inline constexpr double kMaxDeflection_mm = 0.1;
+
+/// Import: faces whose edges are closer than this are sewn when a solid has to be healed. What CAD
+/// systems call coincident in their coarsest setting.
+inline constexpr double kSewing_mm = 1.0e-3;
+
+/// Import: touching solids of one part are told apart by moving shared vertices this far, or two ulp
+/// where that is more. Far below every tolerance.
+inline constexpr double kTouchingSolids_mm = 1.0e-12;
+
+/// Import: neighbouring triangles of a mesh file are one planar face where no corner leaves the
+/// plane by more than this part of the mesh's size: rounding of decimal numbers, nothing drawn.
+inline constexpr double kCoplanarRatio = 1.0e-9;
+
+static_assert(kTouchingSolids_mm * 1.0e6 <= kMinTolerance_mm);
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
 
