@@ -65,10 +65,10 @@ struct QueryCounters {
 };
 
 struct SweepResult {
-  double time_of_impact = 1.0;  ///< in [0, 1]; 1: no interference on the way
-  Pose free_pose;               ///< last pose before it
-  Verdict verdict = Verdict::Clear;      ///< worst on the way
-  std::vector<BodyVerdict> pairs;        ///< at the impact, or at the end where there is none
+  double time_of_impact = 1.0;       ///< in [0, 1]; 1: no interference on the way
+  Pose free_pose;                    ///< last pose before it
+  Verdict verdict = Verdict::Clear;  ///< worst on the way
+  std::vector<BodyVerdict> pairs;    ///< at the impact, or at the end where there is none
 };
 
 /// Placed bodies and the queries on them. One scene a thread; elements may be shared between them.

@@ -10,8 +10,8 @@
 namespace dowel {
 
 /// Ordered by severity, with tolerance t: Interference: depth > t. Contact: not interference and
-/// gap <= t. Clear: otherwise. Gap is the smallest distance between the solids; depth the diameter of
-/// the largest ball that fits into both at once.
+/// gap <= t. Clear: otherwise. Gap is the smallest distance between the solids; depth the diameter
+/// of the largest ball that fits into both at once.
 enum class Verdict : std::uint8_t { Clear, Contact, Interference };
 
 std::string_view to_string(Verdict verdict);
@@ -28,7 +28,8 @@ enum class HoleMode : std::uint8_t { Exact, Paper };
 struct QueryOptions {
   double tolerance_mm = kDefaultTolerance_mm;
   HoleMode holes = HoleMode::Exact;
-  bool first_only = false;  ///< stop at the first interference
+  bool first_only = false;     ///< stop at the first interference
+  bool measure_depth = false;  ///< improve the lower bound of an interference's depth
 };
 
 /// Answer for one pair of bodies.

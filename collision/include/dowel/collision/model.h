@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dowel/kernel/box.h"
+#include "dowel/kernel/faceted_solid.h"
+
+namespace dowel {
+
+/// Node of the tree over an element's triangles. Its box contains the exact faces of its triangles,
+/// not just the facets. Children of an inner node are adjacent.
+struct BvhNode {
+  Eigen::Vector3d min;
+  Eigen::Vector3d max;
+  std::uint32_t first = 0;  ///< leaf: first triangle; inner node: left child, the right one is next
+  std::uint32_t count = 0;  ///< triangles of a leaf; 0: inner node
+
+  bool is_leaf() const noexcept { return count != 0; }
+};
+
+/// How the two triangles at an edge meet.
+enum class EdgeShape : std::uint8_t { Inner, Convex, Concave, Smooth };
+
+/// A facet and what is needed to correct it to the exact faces.
+struct ModelTriangle {
+  std::array<Eigen::Vector3d, 3> corners;
+  Eigen::Vector3d normal;  ///< unit, outward, of the facet
+  std::uint32_t face = 0;
+  std::array<std::uint32_t, 3> neighbours{};  ///< face beyond edge i (corner i to i + 1)
+  std::array<EdgeShape, 3> edges{};           ///< Inner: the same face goes on beyond it
+  bool is_hole = false;                       ///< belongs to the wall of a hole
+  /// How far the exact boundary can stand off this facet: 0 for a plane that ends in straight
+  /// edges, and for a face that is known by its facets alone.
+  double slack_mm = 0.0;
+};
+
+/// Place on the exact boundary that is nearest to some point.
+struct NearestPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double distance_mm = 0.0;
+  bool inside = false;  ///< the asked point lies in the material
+  std::uint32_t triangle = 0;
+  bool on_face = false;  ///< in the inside of a face, not on its rim
+};
+
+/// An element ready for collision queries: immutable, shared by its instances and by threads. All
+/// in the element's frame.
+///
+/// Point queries answer for the exact faces where these are planes, cylinders, cones, spheres or
+/// tori, and for the facets elsewhere. A facet is corrected in two ways: a point of its inside is
+/// lifted to the exact surface, and its straight edges are replaced by the curve in which the two
+/// exact surfaces meet.
+class CollisionModel {
+ public:
+  /// `hole_faces`: faces that are walls of holes. Throws Error{FileMalformed} where the solid has a
+  /// defect (kernel/mesh_defect.h).
+  CollisionModel(std::shared_ptr<const FacetedSolid> solid,
+                 std::span<const std::uint32_t> hole_faces);
+
+  std::span<const BvhNode> nodes() const noexcept { return nodes_; }
+  std::span<const ModelTriangle> triangles() const noexcept { return triangles_; }
+  const Face& face(std::uint32_t index) const { return solid_->faces[index]; }
+
+  /// Nearest place of the boundary. Inside or outside follows from the side of the nearest face, or
+  /// from the edge's shape; at a corner from the parity of a ray.
+  NearestPoint nearest(const Eigen::Vector3d& point) const;
+
+  /// The same by looking at every triangle. Reference for tests.
+  NearestPoint nearest_brute_force(const Eigen::Vector3d& point) const;
+
+  /// True where `point` lies inside the facets: parity of a ray in general position; where eight
+  /// rays in a row hit edges, the winding number.
+  bool facets_contain(const Eigen::Vector3d& point) const;
+
+  /// Winding number of the facets about `point`, 1 inside, 0 outside; O(n).
+  /// Source: Van Oosterom, Strackee, "The Solid Angle of a Plane Triangle", 1983.
+  double winding_number(const Eigen::Vector3d& point) const;
+
+  /// A point deep inside each closed component (not of cavities), with its depth.
+  struct InnerPoint {
+    Eigen::Vector3d point;
+    double depth_mm;
+  };
+  std::span<const InnerPoint> inner_points() const noexcept { return inner_points_; }
+
+  /// Largest slack of the triangles, and largest error of faces known by their facets alone.
+  double max_slack_mm() const noexcept { return max_slack_mm_; }
+  double max_unknown_mm() const noexcept { return max_unknown_mm_; }
+
+  std::size_t memory_bytes() const;
+
+ private:
+  void build_triangles(std::span<const std::uint32_t> hole_faces);
+  void build_tree();
+  void find_inner_points();
+
+  std::shared_ptr<const FacetedSolid> solid_;
+  std::vector<BvhNode> nodes_;
+  std::vector<ModelTriangle> triangles_;
+  std::vector<std::uint32_t> component_of_;  // by triangle
+  std::vector<InnerPoint> inner_points_;
+  double max_slack_mm_ = 0.0;
+  double max_unknown_mm_ = 0.0;
+};
+
+}  // namespace dowel

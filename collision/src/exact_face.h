@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dowel/collision/model.h"
+
+// Distances from the exact faces behind the facets. Private to collision.
+
+namespace dowel {
+
+/// Where on a triangle: 0 inside, 1-3 on edge 0-2, 4-6 at corner 0-2.
+struct TrianglePoint {
+  Eigen::Vector3d point;
+  int region = 0;
+};
+
+/// Point of the flat triangle that is nearest to `p`.
+/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+TrianglePoint closest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners,
+                                  const Eigen::Vector3d& p);
+
+/// Distance of `p` from the material at an exact face: negative on the material's side.
+double outward_distance_mm(const Face& face, const Eigen::Vector3d& p);
+
+/// Unit normal of an exact face at (or nearest to) `p`, out of the material.
+Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p);
+
+inline bool is_exact(const Face& face) {
+  return !std::holds_alternative<OtherSurface>(face.surface);
+}
+
+/// A place of the exact boundary behind one facet that is a candidate for the nearest to some
+/// point.
+struct FacePoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double distance_squared_mm2 = 0.0;
+  enum class Place : std::uint8_t { Face, ConvexRim, ConcaveRim, Corner } place = Place::Face;
+};
+
+/// Nearest place to `p` of the exact face patch behind `triangle`. Always a place of the boundary,
+/// up to terms of second order in the facet error; the smallest over all triangles is the distance.
+FacePoint nearest_on_patch(const CollisionModel& model, const ModelTriangle& triangle,
+                           const Eigen::Vector3d& p);
+
+}  // namespace dowel

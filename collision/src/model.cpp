@@ -1,0 +1,275 @@
+#include "dowel/collision/model.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include "dowel/kernel/check.h"
+#include "dowel/kernel/error.h"
+#include "dowel/kernel/mesh_defect.h"
+#include "exact_face.h"
+
+namespace dowel {
+namespace {
+
+constexpr std::uint32_t kTrianglesPerLeaf = 4;
+
+/// Sine of the dihedral angle below which two faces run on smoothly into each other (about 1
+/// degree).
+constexpr double kSmoothSine = 0.02;
+
+/// Measured rim errors are taken with this allowance: they are measured at the middle of a chord.
+constexpr double kRimAllowance = 1.25;
+
+struct DirectedEdge {
+  std::uint64_t key;
+  std::uint32_t triangle;
+  std::uint32_t edge;
+};
+
+std::uint64_t edge_key(std::uint32_t from, std::uint32_t to) {
+  return (std::uint64_t{from} << 32U) | to;
+}
+
+/// For each triangle and edge, the triangle beyond it.
+std::vector<std::array<std::uint32_t, 3>> triangle_neighbours(const FacetedSolid& solid) {
+  std::vector<DirectedEdge> edges;
+  edges.reserve(solid.triangles.size() * 3);
+  for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
+    const Triangle& triangle = solid.triangles[t];
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      edges.push_back({edge_key(triangle[i], triangle[(i + 1) % 3]), t, i});
+    }
+  }
+  std::ranges::sort(edges, {}, &DirectedEdge::key);
+  std::vector<std::array<std::uint32_t, 3>> result(solid.triangles.size());
+  for (const DirectedEdge& edge : edges) {
+    const auto reverse =
+        edge_key(static_cast<std::uint32_t>(edge.key), static_cast<std::uint32_t>(edge.key >> 32U));
+    const auto beyond = std::ranges::lower_bound(edges, reverse, {}, &DirectedEdge::key);
+    result[edge.triangle][edge.edge] = beyond->triangle;  // exists: the mesh is closed
+  }
+  return result;
+}
+
+EdgeShape edge_shape(const FacetedSolid& solid, std::uint32_t t, std::uint32_t beyond,
+                     const Eigen::Vector3d& normal, std::size_t edge) {
+  if (solid.face_of[t] == solid.face_of[beyond]) return EdgeShape::Inner;
+  const Face& face = solid.faces[solid.face_of[t]];
+  const Face& face_beyond = solid.faces[solid.face_of[beyond]];
+  const std::uint32_t from = solid.triangles[t][edge];
+  const std::uint32_t to = solid.triangles[t][(edge + 1) % 3];
+  std::uint32_t opposite = from;
+  for (const std::uint32_t vertex : solid.triangles[beyond]) {
+    if (vertex != from && vertex != to) opposite = vertex;
+  }
+  const Eigen::Vector3d& a = solid.vertices[from];
+  const Eigen::Vector3d along = (solid.vertices[to] - a).normalized();
+  if (is_exact(face) && is_exact(face_beyond)) {
+    // Facets of a curved face meet a tangent plane at an angle; the exact faces do not.
+    const Eigen::Vector3d middle = 0.5 * (a + solid.vertices[to]);
+    const Eigen::Vector3d n = outward_normal(face, middle);
+    const Eigen::Vector3d n_beyond = outward_normal(face_beyond, middle);
+    const double sine = n.cross(n_beyond).dot(along);
+    if (std::abs(sine) > kSmoothSine) return sine > 0.0 ? EdgeShape::Convex : EdgeShape::Concave;
+    if (n.dot(n_beyond) > 0.0) return EdgeShape::Smooth;
+  }
+  const Eigen::Vector3d away = solid.vertices[opposite] - a;
+  const double height = normal.dot(away);
+  const double reach = (away - along * along.dot(away)).norm();
+  if (std::abs(height) <= kSmoothSine * reach) {
+    return normal.cross(along).dot(away) < 0.0 ? EdgeShape::Smooth
+           : height < 0.0                      ? EdgeShape::Convex
+                                               : EdgeShape::Concave;
+  }
+  return height < 0.0 ? EdgeShape::Convex : EdgeShape::Concave;
+}
+
+/// How far the exact rim stands off the middle of edge `i`.
+double rim_error_mm(const Face& face, const Face& beyond, const ModelTriangle& t, std::size_t i) {
+  const Eigen::Vector3d middle = 0.5 * (t.corners[i] + t.corners[(i + 1) % 3]);
+  const bool both = is_exact(face) && is_exact(beyond);
+  if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return 0.0;
+  Eigen::Vector3d x = middle;
+  for (int step = 0; step < 8; ++step) {
+    x = closest_point(face.surface, closest_point(beyond.surface, x));
+  }
+  return kRimAllowance * (x - middle).norm();
+}
+
+}  // namespace
+
+CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
+                               std::span<const std::uint32_t> hole_faces)
+    : solid_(std::move(solid)) {
+  if (const auto defect = find_defect(*solid_)) throw Error(ErrorCode::FileMalformed, *defect);
+  build_triangles(hole_faces);
+  build_tree();
+  find_inner_points();
+}
+
+void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) {
+  const FacetedSolid& solid = *solid_;
+  const auto neighbours = triangle_neighbours(solid);
+  std::vector<bool> is_hole(solid.faces.size(), false);
+  for (const std::uint32_t face : hole_faces) is_hole.at(face) = true;
+
+  triangles_.resize(solid.triangles.size());
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    ModelTriangle& t = triangles_[i];
+    t.corners = solid.corners(i);
+    t.face = solid.face_of[i];
+    t.is_hole = is_hole[t.face];
+    const Face& face = solid.faces[t.face];
+    t.normal = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]);
+    // A sliver's own normal is rounding; its plane's is not.
+    if (const auto* plane = std::get_if<PlaneSurface>(&face.surface)) {
+      t.normal = plane->normal;
+    } else if (t.normal.squaredNorm() > 0.0) {
+      t.normal.normalize();
+    }
+    t.slack_mm = is_exact(face) && !is_plane(face.surface) ? face.facet_error_mm : 0.0;
+    if (!is_exact(face)) max_unknown_mm_ = std::max(max_unknown_mm_, face.facet_error_mm);
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const std::uint32_t beyond = neighbours[i][edge];
+      t.neighbours[edge] = solid.face_of[beyond];
+      t.edges[edge] = edge_shape(solid, i, beyond, t.normal, edge);
+      if (t.edges[edge] == EdgeShape::Convex || t.edges[edge] == EdgeShape::Concave) {
+        t.slack_mm =
+            std::max(t.slack_mm, rim_error_mm(face, solid.faces[t.neighbours[edge]], t, edge));
+      }
+    }
+    max_slack_mm_ = std::max(max_slack_mm_, t.slack_mm);
+  }
+
+  // Components, by the smallest triangle in each.
+  component_of_.resize(triangles_.size());
+  std::iota(component_of_.begin(), component_of_.end(), 0U);
+  const auto root = [&](std::uint32_t t) {
+    while (component_of_[t] != t) t = component_of_[t] = component_of_[component_of_[t]];
+    return t;
+  };
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    for (const std::uint32_t beyond : neighbours[t]) {
+      const auto [low, high] = std::minmax({root(t), root(beyond)});
+      component_of_[high] = low;
+    }
+  }
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) component_of_[t] = root(t);
+}
+
+void CollisionModel::build_tree() {
+  struct Work {
+    std::uint32_t node;
+    std::uint32_t begin;
+    std::uint32_t end;
+  };
+  const auto count = static_cast<std::uint32_t>(triangles_.size());
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<Aabb> boxes(count);
+  std::vector<Eigen::Vector3d> centers(count);
+  for (std::uint32_t t = 0; t < count; ++t) {
+    for (const Eigen::Vector3d& corner : triangles_[t].corners) boxes[t].extend(corner);
+    centers[t] = boxes[t].center();
+    boxes[t] = boxes[t].padded(triangles_[t].slack_mm);
+  }
+  nodes_.clear();
+  nodes_.reserve(2 * count / kTrianglesPerLeaf + 1);
+  nodes_.emplace_back();
+  std::vector<Work> stack{{0, 0, count}};
+  while (!stack.empty()) {
+    const Work work = stack.back();
+    stack.pop_back();
+    Aabb box;
+    Aabb spread;
+    for (std::uint32_t i = work.begin; i < work.end; ++i) {
+      box.extend(boxes[order[i]]);
+      spread.extend(centers[order[i]]);
+    }
+    nodes_[work.node].min = box.min;
+    nodes_[work.node].max = box.max;
+    if (work.end - work.begin <= kTrianglesPerLeaf) {
+      nodes_[work.node].first = work.begin;
+      nodes_[work.node].count = work.end - work.begin;
+      continue;
+    }
+    Eigen::Index axis = 0;
+    spread.size().maxCoeff(&axis);
+    const std::uint32_t middle = work.begin + (work.end - work.begin) / 2;
+    const auto begin = order.begin();
+    std::nth_element(begin + work.begin, begin + middle, begin + work.end,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       return std::pair(centers[a][axis], a) < std::pair(centers[b][axis], b);
+                     });
+    const auto left = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[work.node].first = left;
+    nodes_.emplace_back();
+    nodes_.emplace_back();
+    stack.push_back({left, work.begin, middle});
+    stack.push_back({left + 1, middle, work.end});
+  }
+  std::vector<ModelTriangle> sorted_triangles;
+  std::vector<std::uint32_t> sorted_components;
+  sorted_triangles.reserve(count);
+  sorted_components.reserve(count);
+  for (const std::uint32_t t : order) {
+    sorted_triangles.push_back(triangles_[t]);
+    sorted_components.push_back(component_of_[t]);
+  }
+  triangles_ = std::move(sorted_triangles);
+  component_of_ = std::move(sorted_components);
+}
+
+void CollisionModel::find_inner_points() {
+  // From some facets of each component a step inward: the middle of the way to the far side is a
+  // start, pushed away from the nearest boundary as long as that makes it deeper.
+  constexpr std::size_t kStarts = 24;
+  constexpr int kPushes = 12;
+  std::map<std::uint32_t, std::vector<std::uint32_t>> components;
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) components[component_of_[t]].push_back(t);
+  for (const auto& [component, members] : components) {
+    InnerPoint best{Eigen::Vector3d::Zero(), 0.0};
+    const std::size_t stride = std::max<std::size_t>(1, members.size() / kStarts);
+    Aabb box;
+    for (const std::uint32_t t : members) {
+      for (const Eigen::Vector3d& corner : triangles_[t].corners) box.extend(corner);
+    }
+    const double reach = box.size().minCoeff();
+    for (std::size_t i = 0; i < members.size(); i += stride) {
+      const ModelTriangle& t = triangles_[members[i]];
+      const Eigen::Vector3d center = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
+      for (double step = 0.5 * reach; step > 1e-3 * reach; step *= 0.5) {
+        Eigen::Vector3d point = center - step * t.normal;
+        NearestPoint near = nearest(point);
+        if (!near.inside) continue;
+        double push = 0.5 * step;
+        for (int k = 0; k < kPushes; ++k) {
+          const Eigen::Vector3d away = (point - near.point).normalized();
+          if (!away.allFinite()) break;
+          const Eigen::Vector3d moved = point + push * away;
+          const NearestPoint next = nearest(moved);
+          if (next.inside && next.distance_mm > near.distance_mm) {
+            point = moved;
+            near = next;
+          } else {
+            push *= 0.5;
+          }
+        }
+        if (near.distance_mm > best.depth_mm) best = {point, near.distance_mm};
+        break;
+      }
+    }
+    if (best.depth_mm > 0.0) inner_points_.push_back(best);
+  }
+}
+
+std::size_t CollisionModel::memory_bytes() const {
+  return sizeof(*this) + nodes_.capacity() * sizeof(BvhNode) +
+         triangles_.capacity() * sizeof(ModelTriangle) +
+         component_of_.capacity() * sizeof(component_of_[0]) +
+         inner_points_.capacity() * sizeof(InnerPoint);
+}
+
+}  // namespace dowel

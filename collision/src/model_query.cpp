@@ -1,0 +1,182 @@
+// Point queries of CollisionModel.
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "dowel/collision/model.h"
+#include "exact_face.h"
+
+namespace dowel {
+namespace {
+
+/// Deep enough for any tree of 32-bit triangle counts split at the median.
+constexpr std::size_t kStackSize = 80;
+
+/// A ray that passes an edge closer than this (relative to the triangle's size) is not counted but
+/// replaced by another: rounding could count it twice or not at all.
+constexpr double kGrazing = 1e-9;
+
+/// Rays in general position: no axis of a machined part is parallel to one.
+constexpr std::array<std::array<double, 3>, 8> kRays{{{0.27, 0.53, 0.81},
+                                                      {-0.61, 0.37, 0.69},
+                                                      {0.43, -0.79, 0.41},
+                                                      {0.71, 0.59, -0.33},
+                                                      {-0.31, -0.67, 0.67},
+                                                      {0.83, -0.29, -0.47},
+                                                      {-0.57, 0.73, -0.39},
+                                                      {-0.73, -0.41, -0.53}}};
+
+double distance_squared(const BvhNode& node, const Eigen::Vector3d& p) {
+  return (node.min - p).cwiseMax(p - node.max).cwiseMax(0.0).squaredNorm();
+}
+
+/// Whether a ray from `origin` crosses the triangle; nothing where it grazes an edge or the plane.
+std::optional<bool> crosses(const ModelTriangle& t, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d a = t.corners[0] - origin;
+  const Eigen::Vector3d b = t.corners[1] - origin;
+  const Eigen::Vector3d c = t.corners[2] - origin;
+  const double u = ray.dot(c.cross(b));
+  const double v = ray.dot(a.cross(c));
+  const double w = ray.dot(b.cross(a));
+  const double scale = std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+  const double slack = kGrazing * scale;
+  const bool positive = u > -slack && v > -slack && w > -slack;
+  const bool negative = u < slack && v < slack && w < slack;
+  if (!positive && !negative) return false;
+  if (std::abs(u) <= slack || std::abs(v) <= slack || std::abs(w) <= slack) return std::nullopt;
+  const double along = (u * a + v * b + w * c).dot(ray) / (u + v + w);
+  if (std::abs(along) <= kGrazing * std::sqrt(scale)) return std::nullopt;
+  return along > 0.0;
+}
+
+bool ray_meets(const BvhNode& node, const Eigen::Vector3d& origin, const Eigen::Vector3d& inverse) {
+  const Eigen::Array3d near = (node.min - origin).array() * inverse.array();
+  const Eigen::Array3d far = (node.max - origin).array() * inverse.array();
+  const double enter = near.min(far).maxCoeff();
+  const double leave = near.max(far).minCoeff();
+  return leave >= 0.0 && enter <= leave * (1.0 + 1e-12) + 1e-12;
+}
+
+/// Crossings of a ray with the facets; nothing where it grazes one.
+std::optional<int> count_crossings(const CollisionModel& model, const Eigen::Vector3d& origin,
+                                   const Eigen::Vector3d& ray) {
+  const Eigen::Vector3d inverse = ray.cwiseInverse();
+  std::array<std::uint32_t, kStackSize> stack{};
+  std::size_t depth = 1;
+  int crossings = 0;
+  while (depth > 0) {
+    const BvhNode& node = model.nodes()[stack[--depth]];
+    if (!ray_meets(node, origin, inverse)) continue;
+    if (!node.is_leaf()) {
+      stack[depth++] = node.first;
+      stack[depth++] = node.first + 1;
+      continue;
+    }
+    for (const ModelTriangle& t : model.triangles().subspan(node.first, node.count)) {
+      const std::optional<bool> crossing = crosses(t, origin, ray);
+      if (!crossing) return std::nullopt;
+      crossings += *crossing ? 1 : 0;
+    }
+  }
+  return crossings;
+}
+
+/// What is nearest so far.
+struct Best {
+  FacePoint place;
+  std::uint32_t triangle = 0;
+
+  Best() { place.distance_squared_mm2 = std::numeric_limits<double>::infinity(); }
+  void look_at(const CollisionModel& model, std::uint32_t t, const Eigen::Vector3d& p) {
+    const FacePoint candidate = nearest_on_patch(model, model.triangles()[t], p);
+    if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
+      place = candidate;
+      triangle = t;
+    }
+  }
+};
+
+bool is_inside(const CollisionModel& model, const Best& best, const Eigen::Vector3d& p) {
+  const ModelTriangle& t = model.triangles()[best.triangle];
+  switch (best.place.place) {
+    case FacePoint::Place::ConvexRim:
+      return false;
+    case FacePoint::Place::ConcaveRim:
+      return true;
+    case FacePoint::Place::Corner:
+      return model.facets_contain(p);
+    case FacePoint::Place::Face:
+      break;
+  }
+  const Face& face = model.face(t.face);
+  if (is_exact(face)) return outward_distance_mm(face, p) < 0.0;
+  return t.normal.dot(p - best.place.point) < 0.0;
+}
+
+NearestPoint to_result(const CollisionModel& model, const Best& best, const Eigen::Vector3d& p) {
+  return {best.place.point, std::sqrt(best.place.distance_squared_mm2), is_inside(model, best, p),
+          best.triangle, best.place.place == FacePoint::Place::Face};
+}
+
+}  // namespace
+
+NearestPoint CollisionModel::nearest(const Eigen::Vector3d& point) const {
+  struct Entry {
+    std::uint32_t node;
+    double distance_squared;
+  };
+  std::array<Entry, kStackSize> stack{};
+  std::size_t depth = 0;
+  stack[depth++] = {0, distance_squared(nodes_[0], point)};
+  Best best;
+  while (depth > 0) {
+    const Entry entry = stack[--depth];
+    if (entry.distance_squared >= best.place.distance_squared_mm2) continue;
+    const BvhNode& node = nodes_[entry.node];
+    if (node.is_leaf()) {
+      for (std::uint32_t i = 0; i < node.count; ++i) best.look_at(*this, node.first + i, point);
+      continue;
+    }
+    Entry near{node.first, distance_squared(nodes_[node.first], point)};
+    Entry far{node.first + 1, distance_squared(nodes_[node.first + 1], point)};
+    if (far.distance_squared < near.distance_squared) std::swap(near, far);
+    stack[depth++] = far;
+    stack[depth++] = near;
+  }
+  return to_result(*this, best, point);
+}
+
+NearestPoint CollisionModel::nearest_brute_force(const Eigen::Vector3d& point) const {
+  Best best;
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) best.look_at(*this, t, point);
+  return to_result(*this, best, point);
+}
+
+bool CollisionModel::facets_contain(const Eigen::Vector3d& point) const {
+  for (const auto& ray : kRays) {
+    const auto crossings = count_crossings(*this, point, Eigen::Vector3d(ray.data()));
+    if (crossings) return *crossings % 2 == 1;
+  }
+  return winding_number(point) > 0.5;
+}
+
+double CollisionModel::winding_number(const Eigen::Vector3d& point) const {
+  double sum = 0.0;
+  for (const ModelTriangle& t : triangles_) {
+    const Eigen::Vector3d a = t.corners[0] - point;
+    const Eigen::Vector3d b = t.corners[1] - point;
+    const Eigen::Vector3d c = t.corners[2] - point;
+    const double la = a.norm();
+    const double lb = b.norm();
+    const double lc = c.norm();
+    const double numerator = a.dot(b.cross(c));
+    const double denominator = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    sum += std::atan2(numerator, denominator);
+  }
+  return sum / (2.0 * std::numbers::pi);
+}
+
+}  // namespace dowel

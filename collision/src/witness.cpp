@@ -1,0 +1,202 @@
+#include "witness.h"
+
+#include <algorithm>
+#include <array>
+
+#include <Eigen/LU>
+
+#include "exact_face.h"
+
+namespace dowel {
+namespace {
+
+/// A witness may miss the depth by this part of it.
+constexpr double kDepthSlack = 1e-4;
+
+/// Added to the normal matrix: two opposite planes then share the miss instead of dividing by zero.
+constexpr double kRegularisation = 1e-9;
+
+constexpr std::size_t kMaxConstraints = 4;
+constexpr int kRounds = 8;
+constexpr int kNewtonSteps = 3;
+
+enum class Side : std::uint8_t { A, B };
+
+/// "Stay this deep behind that face", for one of the solids.
+struct Constraint {
+  Side side = Side::A;
+  const Face* face = nullptr;  ///< an exact face; else the plane below
+  Eigen::Vector3d point_B = Eigen::Vector3d::Zero();
+  Eigen::Vector3d inward_B = Eigen::Vector3d::UnitZ();
+};
+
+struct DepthAndSlope {
+  double depth_mm;
+  Eigen::Vector3d inward_B;
+};
+
+class Search {
+ public:
+  Search(const ModelPair& pair, double depth_mm)
+      : pair_(pair), X_AB_(pair.X_BA.inverse()), depth_mm_(depth_mm) {}
+
+  double enough_mm() const { return depth_mm_ * (1.0 - kDepthSlack); }
+
+  void add_triangle(Side side, std::uint32_t triangle) {
+    const CollisionModel& m = model(side);
+    const ModelTriangle& t = m.triangles()[triangle];
+    const Face& face = m.face(t.face);
+    Constraint constraint{side, is_exact(face) ? &face : nullptr, t.corners[0], -t.normal};
+    if (side == Side::A) {
+      constraint.point_B = pair_.X_BA * constraint.point_B;
+      constraint.inward_B = pair_.X_BA.rotation() * constraint.inward_B;
+    }
+    constraints_[count_++] = constraint;
+  }
+
+  /// Moves `p` to `depth_mm` behind all constraints, as nearly as they allow. False where they do
+  /// not leave room enough.
+  bool settle(Eigen::Vector3d& p) const {
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxConstraints, 3> slopes(
+          static_cast<Eigen::Index>(count_), 3);
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConstraints, 1> misses(
+          static_cast<Eigen::Index>(count_));
+      for (std::size_t i = 0; i < count_; ++i) {
+        const DepthAndSlope d = depth_behind(constraints_[i], p);
+        slopes.row(static_cast<Eigen::Index>(i)) = d.inward_B.transpose();
+        misses[static_cast<Eigen::Index>(i)] = depth_mm_ - d.depth_mm;
+      }
+      if (misses.cwiseAbs().maxCoeff() <= 0.1 * kDepthSlack * depth_mm_) break;
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConstraints, kMaxConstraints>
+          normal = slopes * slopes.transpose();
+      normal.diagonal().array() += kRegularisation;
+      p += slopes.transpose() * normal.partialPivLu().solve(misses).eval();
+      if (!p.allFinite()) return false;
+    }
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (depth_behind(constraints_[i], p).depth_mm < enough_mm()) return false;
+    }
+    return true;
+  }
+
+  struct Reading {
+    double depth_mm;
+    Constraint nearest;
+  };
+  /// Depth of `p` in one solid and the constraint that its nearest boundary stands for.
+  Reading read(Side side, const Eigen::Vector3d& p) const {
+    const Eigen::Vector3d asked = side == Side::A ? X_AB_ * p : p;
+    const NearestPoint near = model(side).nearest(asked);
+    const Face& face = model(side).face(model(side).triangles()[near.triangle].face);
+    Constraint constraint{side, near.on_face && is_exact(face) ? &face : nullptr,
+                          side == Side::A ? pair_.X_BA * near.point : near.point,
+                          Eigen::Vector3d::UnitZ()};
+    const Eigen::Vector3d inward = near.inside ? Eigen::Vector3d(p - constraint.point_B)
+                                               : Eigen::Vector3d(constraint.point_B - p);
+    if (inward.squaredNorm() > 0.0) constraint.inward_B = inward.normalized();
+    return {near.inside ? near.distance_mm : -near.distance_mm, constraint};
+  }
+
+  /// False where nothing new is learned: the face is known, or there is no room for another.
+  bool add(const Constraint& constraint) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const bool same =
+          constraint.face != nullptr
+              ? constraints_[i].face == constraint.face
+              : (constraints_[i].face == nullptr && constraints_[i].side == constraint.side &&
+                 constraints_[i].inward_B.dot(constraint.inward_B) > 1.0 - kDepthSlack);
+      if (same && constraints_[i].side == constraint.side) return false;
+    }
+    if (count_ == kMaxConstraints) return false;
+    constraints_[count_++] = constraint;
+    return true;
+  }
+
+  bool in_relief(const Eigen::Vector3d& p) const {
+    return std::ranges::any_of(pair_.reliefs_B, [&](const ThreadRelief& relief) {
+      const Eigen::Vector3d from_start = p - relief.start;
+      const double along = relief.direction.dot(from_start);
+      return along >= -depth_mm_ && along <= relief.length_mm + depth_mm_ &&
+             (from_start - along * relief.direction).norm() <= relief.radius_mm + depth_mm_;
+    });
+  }
+
+ private:
+  const CollisionModel& model(Side side) const { return side == Side::A ? pair_.a : pair_.b; }
+
+  DepthAndSlope depth_behind(const Constraint& constraint, const Eigen::Vector3d& p) const {
+    if (constraint.face == nullptr) {
+      return {constraint.inward_B.dot(p - constraint.point_B), constraint.inward_B};
+    }
+    if (constraint.side == Side::B) {
+      return {-outward_distance_mm(*constraint.face, p), -outward_normal(*constraint.face, p)};
+    }
+    const Eigen::Vector3d p_A = X_AB_ * p;
+    return {-outward_distance_mm(*constraint.face, p_A),
+            pair_.X_BA.rotation() * -outward_normal(*constraint.face, p_A)};
+  }
+
+  const ModelPair& pair_;
+  Pose X_AB_;
+  double depth_mm_;
+  std::array<Constraint, kMaxConstraints> constraints_;
+  std::size_t count_ = 0;
+};
+
+/// Runs rounds of settling and asking from `start` on.
+std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double reach_mm) {
+  Eigen::Vector3d p = start;
+  for (int round = 0; round < kRounds; ++round) {
+    if (!search.settle(p) || (p - start).norm() > reach_mm || search.in_relief(p)) {
+      return std::nullopt;
+    }
+    const Search::Reading in_a = search.read(Side::A, p);
+    const Search::Reading in_b = search.read(Side::B, p);
+    const double depth = std::min(in_a.depth_mm, in_b.depth_mm);
+    if (depth >= search.enough_mm()) return Witness{p, depth};
+    bool learned = false;
+    if (in_a.depth_mm < search.enough_mm()) learned = search.add(in_a.nearest) || learned;
+    if (in_b.depth_mm < search.enough_mm()) learned = search.add(in_b.nearest) || learned;
+    if (!learned) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                    std::uint32_t triangle_a, std::uint32_t triangle_b,
+                                    double depth_mm, double reach_mm) {
+  Search search(pair, depth_mm);
+  search.add_triangle(Side::A, triangle_a);
+  search.add_triangle(Side::B, triangle_b);
+  return run(search, start_B, reach_mm);
+}
+
+std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d& point_B,
+                                    double depth_mm) {
+  const Search search(pair, depth_mm);
+  if (search.in_relief(point_B)) return std::nullopt;
+  const double depth =
+      std::min(search.read(Side::A, point_B).depth_mm, search.read(Side::B, point_B).depth_mm);
+  if (depth < search.enough_mm()) return std::nullopt;
+  return Witness{point_B, depth};
+}
+
+Witness deepen(const ModelPair& pair, const Witness& witness) {
+  Witness best = witness;
+  for (double growth = 2.0; growth > 1.05; growth = 1.0 + 0.5 * (growth - 1.0)) {
+    for (int step = 0; step < 24; ++step) {
+      Search search(pair, growth * best.depth_mm);
+      search.add(search.read(Side::A, best.point_B).nearest);
+      search.add(search.read(Side::B, best.point_B).nearest);
+      const auto deeper = run(search, best.point_B, 8.0 * growth * best.depth_mm);
+      if (!deeper) break;
+      best = *deeper;
+    }
+  }
+  return best;
+}
+
+}  // namespace dowel

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "narrow_phase.h"
+
+// The search for a point that proves interference. Private to collision.
+
+namespace dowel {
+
+struct Witness {
+  Eigen::Vector3d point_B;
+  double depth_mm;  ///< smaller of its depths in the two solids
+};
+
+/// A point at least `depth_mm` (less one part in 10^4) deep in both exact solids, sought from
+/// `start_B` within `reach_mm`; nothing where none is found. `triangle_a`, `triangle_b`: the facets
+/// that made the start interesting.
+///
+/// The point is moved by least-squares steps to where it is `depth_mm` behind both exact faces;
+/// then the boundary nearest to it in each solid is asked, and a face that it is not deep enough
+/// behind joins the set (at most four). Two faces that leave no room between them end the search at
+/// once.
+std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                    std::uint32_t triangle_a, std::uint32_t triangle_b,
+                                    double depth_mm, double reach_mm);
+
+/// The depth of the point in both solids, as it stands.
+std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d& point_B,
+                                    double depth_mm);
+
+/// Makes a witness deeper while that is easy: a better lower bound of the depth.
+Witness deepen(const ModelPair& pair, const Witness& witness);
+
+}  // namespace dowel
