@@ -24,6 +24,19 @@ inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 /// much (a ratio): rounding of any writer, far below what shows on a part.
 inline constexpr double kStoredAxisSlack = 1.0e-6;
 
+/// Recognition: axes, radii, planes and rims closer than this belong to one feature, and a free-form
+/// face that misses a plane, cylinder or cone by no more is one: a micrometre, what exporters that
+/// write B-splines only leave, and a third of the tightest clearance in a fixture.
+inline constexpr double kSameFeature_mm = 1.0e-3;
+
+/// Recognition: iterations stop at, and components of directions are zero below, this ratio: a few
+/// thousand ulp, ten orders below what a fixture shows.
+inline constexpr double kRounding = 1.0e-12;
+
+/// Recognition: lengths of features are rounded to multiples of this, a picometre, so that 30 reads 30
+/// whatever pose the exporter wrote.
+inline constexpr double kFeatureGrid_mm = 1.0e-9;
+
 /// Default tolerance between contact and interference, and between clear and contact.
 inline constexpr double kDefaultTolerance_mm = 0.01;
 
@@ -85,6 +98,8 @@ inline constexpr double kTouchingSolids_mm = 1.0e-12;
 /// plane by more than this part of the mesh's size: rounding of decimal numbers, nothing drawn.
 inline constexpr double kCoplanarRatio = 1.0e-9;
 
+static_assert(kCoincident_mm * 10 <= kSameFeature_mm);
+static_assert(kFeatureGrid_mm * 100 <= kCoincident_mm);
 static_assert(kTouchingSolids_mm * 1.0e6 <= kMinTolerance_mm);
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
