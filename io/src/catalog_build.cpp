@@ -1,0 +1,307 @@
+#include "dowel/io/catalog_build.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "dowel/catalog/catalog.h"
+#include "dowel/catalog/recognition.h"
+#include "dowel/kernel/check.h"
+#include "dowel/kernel/error.h"
+#include "sha256.h"
+
+namespace dowel {
+namespace {
+
+/// Grows when the same file would give other elements than before, so that catalogues refresh.
+constexpr int kPipelineVersion = 1;
+
+/// A path of the build. `problem` tells why it leads to no file.
+struct Input {
+  std::filesystem::path path;
+  std::string problem;
+};
+
+bool is_readable_by_dowel(const std::filesystem::path& file) {
+  return is_step_file(file) || is_mesh_file(file);
+}
+
+/// All files below `folder` that dowel reads, sorted. Folders that may not be entered are left out;
+/// links to folders are not followed, they may lead in circles.
+std::vector<Input> files_in(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  std::vector<Input> files;
+  std::error_code problem;
+  fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied,
+                                      problem);
+  while (!problem && at != fs::recursive_directory_iterator()) {
+    std::error_code ignored;
+    if (is_readable_by_dowel(at->path()) && at->is_regular_file(ignored)) {
+      files.push_back({at->path(), ""});
+    }
+    at.increment(problem);
+  }
+  if (problem) return {{folder, "cannot be listed: " + problem.message()}};
+  if (files.empty()) return {{folder, "there is no STEP or mesh file in this folder"}};
+  std::ranges::sort(files, {}, [](const Input& input) { return input.path.native(); });
+  return files;
+}
+
+std::vector<Input> expand(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (std::filesystem::is_directory(status)) return files_in(path);
+  std::string problem;
+  if (!std::filesystem::exists(status)) {
+    problem = "no such file or folder";
+  } else if (!std::filesystem::is_regular_file(status)) {
+    problem = "is not a regular file";
+  } else if (!is_readable_by_dowel(path)) {
+    problem = "its name does not end as that of a STEP or mesh file";
+  }
+  return {{path, problem}};
+}
+
+/// Every file once, under the first name that leads to it.
+std::vector<Input> expand(std::span<const std::filesystem::path> paths) {
+  std::set<std::filesystem::path> seen;
+  std::vector<Input> inputs;
+  for (const std::filesystem::path& path : paths) {
+    for (Input& input : expand(path)) {
+      std::error_code problem;
+      std::filesystem::path key = std::filesystem::weakly_canonical(input.path, problem);
+      if (problem) key = input.path;
+      if (seen.insert(std::move(key)).second) inputs.push_back(std::move(input));
+    }
+  }
+  return inputs;
+}
+
+/// All that decides what a file's content gives. Limits on time and memory are left out: they
+/// decide only whether it gives anything.
+std::string settings_line(const ImportOptions& options) {
+  char line[160];
+  std::snprintf(line, sizeof line,
+                "pipeline %d, deflection %.17g mm, angle %.17g rad, %u triangles, %s",
+                kPipelineVersion, options.deflection_mm, options.angular_deflection_rad,
+                options.max_triangles, options.whole_file ? "whole file" : "parts");
+  return line;
+}
+
+std::string family_of(const std::string& name) {
+  const std::size_t slash = name.rfind('/');
+  return slash == std::string::npos ? "" : name.substr(0, slash);
+}
+
+/// The element that a part makes, with what is recognised on it. Throws Error{FileMalformed} where
+/// that is not sound.
+ElementRecord make_record(ImportedPart&& part, const SourceRecord& source,
+                          const std::string& licence) {
+  ElementRecord record;
+  Element& element = record.element;
+  element.name = part.name.empty() ? std::filesystem::path(source.path).stem().string() : part.name;
+  element.family = family_of(element.name);
+  element.source = source.path;
+  element.sha256 = source.sha256;
+  element.unit_in_file = part.unit_in_file;
+  element.licence = licence;
+  element.solids = part.solid.solid_count;
+  element.volume_mm3 = part.volume_mm3;
+  element.surface_mm2 = part.surface_mm2;
+  element.center_of_mass = part.center_of_mass;
+  element.colour = part.colour;
+  for (const Face& face : part.solid.faces) {
+    element.facet_error_mm = std::max(element.facet_error_mm, face.facet_error_mm);
+  }
+  element.features = recognise_features(part.solid);
+  element.shape = classify_shape(part.solid, element.features);
+  element.triangles = count_triangles(part.solid, classify_faces(part.solid, element.features));
+  element.obb = enclosing_box(part.solid);
+  if (const auto defect = find_defect(element)) {
+    throw Error(ErrorCode::FileMalformed, "part \"" + element.name + "\": " + *defect);
+  }
+  record.solid = std::move(part.solid);
+  record.brep = std::move(part.brep);
+  return record;
+}
+
+/// A file of the build on its way into the catalogue.
+struct Job {
+  Input input;
+  SourceRecord source;
+  std::string licence;
+  bool must_read = false;
+  BuiltFile built;
+};
+
+class Build {
+ public:
+  Build(Catalog& catalog, const BuildOptions& options, const BuildCallback& on_file,
+        std::vector<Input>&& inputs)
+      : catalog_(catalog), options_(options), on_file_(on_file) {
+    for (Input& input : inputs) jobs_.push_back(prepare(std::move(input)));
+  }
+
+  std::vector<BuiltFile> run() && {
+    std::vector<std::filesystem::path> files;
+    std::vector<std::size_t> job_of;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      if (!jobs_[i].must_read) continue;
+      files.push_back(jobs_[i].input.path);
+      job_of.push_back(i);
+    }
+    // What goes wrong here must not pass through the reader, which has children to look after.
+    std::exception_ptr failure;
+    import_files(files, options_.import, options_.jobs, [&](std::size_t i, ImportResult&& result) {
+      try {
+        return report_until(job_of[i]) && store(jobs_[job_of[i]], std::move(result)) &&
+               report_until(job_of[i] + 1);
+      } catch (...) {
+        failure = std::current_exception();
+        return false;
+      }
+    });
+    if (failure) std::rethrow_exception(failure);
+    if (!stopped_) report_until(jobs_.size());
+    return std::move(report_);
+  }
+
+ private:
+  Job prepare(Input&& input);
+  bool is_unchanged(const Job& job, const SourceRecord& known) const;
+  bool store(Job& job, ImportResult&& result);
+  bool report_until(std::size_t end);
+
+  Catalog& catalog_;
+  const BuildOptions& options_;
+  const BuildCallback& on_file_;
+  std::vector<Job> jobs_;
+  std::vector<BuiltFile> report_;
+  bool stopped_ = false;
+};
+
+/// Decides whether the file must be read. Its hash is taken before: where it changes meanwhile, the
+/// next build sees another one and reads it again.
+Job Build::prepare(Input&& input) {
+  Job job;
+  job.input = std::move(input);
+  job.built.file = job.input.path.string();
+  job.built.reason = job.input.problem;
+  if (!job.input.problem.empty()) return job;
+
+  job.source.path = job.built.file;
+  job.source.settings = settings_line(options_.import);
+  try {
+    job.source.sha256 = sha256_of_file(job.input.path);
+  } catch (const Error& error) {
+    job.built.reason = error.what();
+    return job;
+  }
+  const std::optional<SourceRecord> known = catalog_.source(job.source.path);
+  if (known && !known->elements.empty()) {
+    const std::optional<Element> element = catalog_.find(known->elements.front());
+    if (element) job.licence = element->licence;
+  }
+  job.must_read = options_.force || !known || !is_unchanged(job, *known);
+  if (!job.must_read) {
+    job.built.reason = known->reason;
+    job.built.elements = known->elements;
+    job.built.status = known->status == "ok"      ? BuildStatus::Unchanged
+                       : known->status == "empty" ? BuildStatus::Empty
+                                                  : BuildStatus::Failed;
+  }
+  if (options_.licence) job.licence = *options_.licence;
+  return job;
+}
+
+bool Build::is_unchanged(const Job& job, const SourceRecord& known) const {
+  const bool same_licence =
+      known.elements.empty() || !options_.licence || *options_.licence == job.licence;
+  return known.sha256 == job.source.sha256 && known.settings == job.source.settings && same_licence;
+}
+
+/// Puts what was read into the catalogue and completes the job's report. Always true.
+bool Build::store(Job& job, ImportResult&& result) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<ElementRecord> records;
+  job.built.reason = result.reason;
+  switch (result.status) {
+    case ImportResult::Status::Ok:
+      job.built.status = BuildStatus::Ok;
+      break;
+    case ImportResult::Status::Empty:
+      job.built.status = BuildStatus::Empty;
+      break;
+    case ImportResult::Status::Failed:
+      job.built.status = BuildStatus::Failed;
+      break;
+  }
+  if (job.built.status == BuildStatus::Ok) {
+    try {
+      for (ImportedPart& part : result.parts) {
+        records.push_back(make_record(std::move(part), job.source, job.licence));
+      }
+    } catch (const std::exception& error) {
+      // A part that recognition cannot take costs its file, not the build.
+      records.clear();
+      job.built.status = BuildStatus::Failed;
+      job.built.reason = error.what();
+    }
+  }
+  job.source.status = to_string(job.built.status);
+  job.source.reason = job.built.reason;
+  job.built.elements = catalog_.put(job.source, records);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  job.built.seconds = result.seconds + taken.count();
+  return true;
+}
+
+/// Reports the files before `end` that were not reported yet. False: the caller wants no more.
+bool Build::report_until(std::size_t end) {
+  while (!stopped_ && report_.size() < end) {
+    report_.push_back(std::move(jobs_[report_.size()].built));
+    stopped_ = on_file_ && !on_file_(report_.back(), report_.size(), jobs_.size());
+  }
+  return !stopped_;
+}
+
+}  // namespace
+
+std::string_view to_string(BuildStatus status) {
+  switch (status) {
+    case BuildStatus::Ok:
+      return "ok";
+    case BuildStatus::Unchanged:
+      return "unchanged";
+    case BuildStatus::Empty:
+      return "empty";
+    case BuildStatus::Failed:
+      return "failed";
+  }
+  DOWEL_EXPECTS(false && "a known status");
+  return {};
+}
+
+std::vector<BuiltFile> build_catalog(std::span<const std::filesystem::path> paths,
+                                     const std::filesystem::path& catalog_file,
+                                     const BuildOptions& options, const BuildCallback& on_file) {
+  std::vector<Input> inputs = expand(paths);
+  const bool has_file =
+      std::ranges::any_of(inputs, [](const Input& input) { return input.problem.empty(); });
+  if (!has_file) {
+    std::vector<BuiltFile> report;
+    for (const Input& input : inputs) {
+      report.push_back({input.path.string(), BuildStatus::Failed, input.problem, {}, 0.0});
+      if (on_file && !on_file(report.back(), report.size(), inputs.size())) break;
+    }
+    return report;
+  }
+  Catalog catalog(catalog_file, Catalog::Access::ReadWrite);
+  return Build(catalog, options, on_file, std::move(inputs)).run();
+}
+
+}  // namespace dowel
