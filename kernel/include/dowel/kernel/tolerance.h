@@ -33,9 +33,9 @@ inline constexpr double kSameFeature_mm = 1.0e-3;
 /// thousand ulp, ten orders below what a fixture shows.
 inline constexpr double kRounding = 1.0e-12;
 
-/// Recognition: lengths of features are rounded to multiples of this, a picometre, so that 30 reads 30
-/// whatever pose the exporter wrote.
-inline constexpr double kFeatureGrid_mm = 1.0e-9;
+/// Recognition: lengths of features are rounded to a picometre, so that 30 reads 30 whatever pose the
+/// exporter wrote. Steps in a millimetre, because a quotient by it is the nearest double.
+inline constexpr double kFeatureSteps_per_mm = 1.0e9;
 
 /// Default tolerance between contact and interference, and between clear and contact.
 inline constexpr double kDefaultTolerance_mm = 0.01;
@@ -99,7 +99,7 @@ inline constexpr double kTouchingSolids_mm = 1.0e-12;
 inline constexpr double kCoplanarRatio = 1.0e-9;
 
 static_assert(kCoincident_mm * 10 <= kSameFeature_mm);
-static_assert(kFeatureGrid_mm * 100 <= kCoincident_mm);
+static_assert(kCoincident_mm * kFeatureSteps_per_mm >= 100);
 static_assert(kTouchingSolids_mm * 1.0e6 <= kMinTolerance_mm);
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
