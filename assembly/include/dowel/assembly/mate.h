@@ -1,0 +1,84 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "dowel/catalog/feature.h"
+#include "dowel/kernel/pose.h"
+
+namespace dowel {
+
+/// What goes with what. The first named moves, the second stays.
+///
+/// | kind            | axes            | along the axis                                     |
+/// |-----------------|-----------------|----------------------------------------------------|
+/// | ShaftInHole     | same sense      | shoulder at the opening                            |
+/// | HoleOnHole      | same sense      | far end of the through hole at the other's opening |
+/// | BlindHoleOnHole | opposite sense  | opening on opening                                 |
+/// | HoleOverShaft   | see below       | the hole's end next to the shoulder stands on it   |
+/// | FaceOnFace      | opposite sense  | planes coincide; nothing moves in the plane        |
+///
+/// A through hole slides over a shaft in the sense that turns the part least; a blind one with its
+/// opening first.
+enum class MateKind { ShaftInHole, HoleOnHole, BlindHoleOnHole, HoleOverShaft, FaceOnFace };
+
+/// "shaft in hole", "hole on hole", "blind hole on hole", "hole over shaft", "face on face".
+std::string_view to_string(MateKind kind);
+
+/// A feature and the pose of the instance that it belongs to.
+struct PlacedFeature {
+  const Feature* feature = nullptr;  ///< in the instance's frame
+  Pose X_WI;
+
+  Eigen::Vector3d origin_W() const { return X_WI * feature->origin; }
+  Eigen::Vector3d direction_W() const { return X_WI.rotation() * feature->direction; }
+};
+
+/// Two planar faces, of the moving part and of any other, that take over the place along the axis:
+/// their planes coincide and their normals are opposite, which also settles the sense of the axis.
+struct Seat {
+  const Feature* moving_face = nullptr;  ///< in the moving instance's frame
+  PlacedFeature fixed_face;
+};
+
+struct MateOptions {
+  /// Lifts the moving part off again by this much, against the way it came in (with a seat: along
+  /// the fixed face's normal).
+  double offset_mm = 0.0;
+  /// Turns it further, counter-clockwise for one who looks at the fixed part from where the moving
+  /// one came.
+  double rotation_rad = 0.0;
+  /// Takes the moving feature from its other end. Not with a seat, blind holes or faces.
+  bool flip = false;
+};
+
+/// Where the moving instance ends up.
+struct MatePlacement {
+  MateKind kind = MateKind::ShaftInHole;
+  Pose X_WA;
+};
+
+/// The kind of mate of a moving and a fixed feature. Throws Error{InvalidInput} where there is none
+/// (a shaft in a shaft, a face in a hole).
+MateKind mate_kind(const Feature& moving, const Feature& fixed);
+
+/// Places instance A by closed form so that its feature `moving` mates with `fixed`. Of all turns
+/// about the axis it takes the one nearest to A's present orientation, then adds
+/// `options.rotation_rad`. Construction: rounded, within a few ulp of the coordinates.
+/// Throws Error{InvalidInput}: no such mate, a seat whose faces are not square to the axis, a seat
+/// or flip that does not apply. Diameters are not looked at; see `fit_on_axis`.
+MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fixed,
+                            const std::optional<Seat>& seat, const MateOptions& options);
+
+/// How far two mated features are off each other now.
+struct MateResidual {
+  double axis_mm = 0.0;    ///< between the axes, at the moving feature; 0 for faces
+  double angle_rad = 0.0;  ///< between the directions, whatever their sense; faces: off opposite
+  double along_mm = 0.0;   ///< gap along the axis or normal less the offset that was asked for
+};
+
+/// `offset_mm` and `flip` as the mate was made with.
+MateResidual mate_residual(const PlacedFeature& moving, const PlacedFeature& fixed,
+                           const std::optional<Seat>& seat, const MateOptions& options);
+
+}  // namespace dowel

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dowel/catalog/element.h"
+#include "dowel/collision/scene.h"
+#include "dowel/kernel/pose.h"
+
+namespace dowel {
+
+/// ISO metric coarse thread. An external thread is modelled as a cylinder of nominal diameter, an
+/// internal one as a cylinder between its minor diameter and its tap drill.
+struct MetricThread {
+  double nominal_mm = 0.0;
+  double pitch_mm = 0.0;
+  double tap_drill_mm = 0.0;
+
+  /// D1 of the internal thread.
+  double minor_mm() const { return nominal_mm - 1.0825 * pitch_mm; }
+};
+
+/// M3 to M24, by diameter. Source: ISO 261 (pitches), ISO 2306 (tap drills).
+std::span<const MetricThread> metric_threads();
+
+/// The thread that a cylinder of `shaft_diameter_mm` can stand for; nothing where it is of no
+/// nominal diameter.
+const MetricThread* thread_of_shaft(double shaft_diameter_mm);
+
+/// True where a bore of `hole_diameter_mm` is a core hole for the thread of the shaft.
+bool forms_thread(double shaft_diameter_mm, double hole_diameter_mm);
+
+/// How a shaft goes with a hole on the same axis, where both are placed.
+struct AxisFit {
+  bool thread = false;  ///< the shaft reaches a stretch that is its thread's core hole
+  /// First stretch of the bore, by depth, that the shaft is in and is too thick for (by more than
+  /// kShaftExcess_mm, and not its thread); nothing where the shaft fits.
+  const HoleSegment* obstacle = nullptr;
+};
+
+/// `shaft`, an element's feature at X_WS, in `hole`, another's at X_WH. A shaft that stands clear
+/// of the bore is measured against its opening. Cones are no obstacle: a chamfer or drill point is
+/// a matter of collision. `obstacle` points into `hole`.
+/// Expects: a shaft and a hole, coaxial.
+AxisFit fit_on_axis(const Feature& shaft, const Pose& X_WS, const Feature& hole, const Pose& X_WH);
+
+/// Threads that the shafts of one element form with the holes of another where they are coaxial
+/// (within kCoaxial_mm and kCoaxial_rad), as cylinders in the frame of `tapped`. A relief spans its
+/// whole core hole with the chamfers at its mouths, so that it holds while the screw turns in.
+std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT,
+                                         const Element& screw, const Pose& X_WS);
+
+/// True where `thread_reliefs` could find any, wherever the two are placed.
+bool may_form_thread(const Element& tapped, const Element& screw);
+
+}  // namespace dowel

@@ -1,0 +1,166 @@
+#include "project_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "dowel/assembly/names.h"
+#include "dowel/kernel/error.h"
+
+namespace dowel {
+namespace {
+
+constexpr const char* kModeSetting = "mode";
+constexpr const char* kToleranceSetting = "tolerance_mm";
+
+/// Shortest text that reads back to the same double.
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+/// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`.
+template <class Map, class Row>
+void add_difference(const Map& from, const Map& to, std::vector<Row>& before,
+                    std::vector<Row>& after) {
+  for (const auto& [key, row] : from) {
+    const auto found = to.find(key);
+    if (found == to.end() || !(found->second == row)) before.push_back(row);
+  }
+  for (const auto& [key, row] : to) {
+    const auto found = from.find(key);
+    if (found == from.end() || !(found->second == row)) after.push_back(row);
+  }
+}
+
+[[noreturn]] void fail_to_fit(const std::string& row) {
+  throw Error(ErrorCode::FileMalformed, "the journal does not fit the project: " + row);
+}
+
+template <class Map, class Key, class Row>
+void take(Map& map, const Key& key, const Row& row, const std::string& what) {
+  const auto found = map.find(key);
+  if (found == map.end() || !(found->second == row)) {
+    fail_to_fit(what + " is not as the journal left it");
+  }
+  map.erase(found);
+}
+
+template <class Map, class Key, class Row>
+void put(Map& map, const Key& key, const Row& row, const std::string& what) {
+  if (!map.emplace(key, row).second) fail_to_fit(what + " is there already");
+}
+
+bool is_known(const ProjectState& state, const FeatureName& name) {
+  return state.instances.contains(name.instance);
+}
+
+}  // namespace
+
+std::vector<SettingRow> settings_of(const ProjectState& state) {
+  return {{kModeSetting, std::string(to_string(state.mode))},
+          {kToleranceSetting, number_text(state.tolerance_mm)}};
+}
+
+void apply_setting(ProjectState& state, const SettingRow& row) {
+  if (row.name == kModeSetting) {
+    if (const auto mode = check_mode_from(row.value)) {
+      state.mode = *mode;
+      return;
+    }
+  } else if (row.name == kToleranceSetting) {
+    double value = 0.0;
+    const char* const end = row.value.data() + row.value.size();
+    const auto [stop, error] = std::from_chars(row.value.data(), end, value);
+    if (error == std::errc{} && stop == end && is_tolerance(value)) {
+      state.tolerance_mm = value;
+      return;
+    }
+  }
+  throw Error(ErrorCode::FileMalformed,
+              "setting \"" + row.name + "\" has the unknown value \"" + row.value + "\"");
+}
+
+ProjectChange difference(const ProjectState& from, const ProjectState& to) {
+  ProjectChange change;
+  const std::vector<SettingRow> old_settings = settings_of(from);
+  const std::vector<SettingRow> new_settings = settings_of(to);
+  for (std::size_t i = 0; i < old_settings.size(); ++i) {
+    if (old_settings[i] == new_settings[i]) continue;
+    change.before.settings.push_back(old_settings[i]);
+    change.after.settings.push_back(new_settings[i]);
+  }
+  add_difference(from.instances, to.instances, change.before.instances, change.after.instances);
+  add_difference(from.mates, to.mates, change.before.mates, change.after.mates);
+  return change;
+}
+
+ProjectState changed(const ProjectState& state, const ProjectChange& change) {
+  ProjectState next = state;
+  const std::vector<SettingRow> present = settings_of(state);
+  for (const SettingRow& row : change.before.settings) {
+    if (std::ranges::find(present, row) == present.end()) {
+      fail_to_fit("setting \"" + row.name + "\" is not as the journal left it");
+    }
+  }
+  for (const Mate& mate : change.before.mates) {
+    take(next.mates, mate.number, mate, "mate " + std::to_string(mate.number));
+  }
+  for (const Instance& instance : change.before.instances) {
+    take(next.instances, instance.name, instance, "instance \"" + instance.name + "\"");
+  }
+  for (const SettingRow& row : change.after.settings) apply_setting(next, row);
+  for (const Instance& instance : change.after.instances) {
+    put(next.instances, instance.name, instance, "instance \"" + instance.name + "\"");
+  }
+  for (const Mate& mate : change.after.mates) {
+    put(next.mates, mate.number, mate, "mate " + std::to_string(mate.number));
+  }
+  return next;
+}
+
+std::optional<std::string> find_defect(const ProjectState& state,
+                                       const std::vector<std::string>& elements) {
+  std::set<std::uint32_t> numbers;
+  for (const auto& [name, instance] : state.instances) {
+    if (const auto defect = instance_name_defect(name)) {
+      return "instance name \"" + name + "\" " + *defect;
+    }
+    if (!numbers.insert(instance.number).second) {
+      return "two instances have the number " + std::to_string(instance.number);
+    }
+    if (!std::ranges::binary_search(elements, instance.element)) {
+      return "instance \"" + name + "\" is of element \"" + instance.element +
+             "\", of which there is no copy";
+    }
+  }
+  for (const auto& [number, mate] : state.mates) {
+    const bool sound = is_known(state, mate.moving) && is_known(state, mate.fixed) &&
+                       (!mate.has_seat() ||
+                        (is_known(state, mate.moving_face) && is_known(state, mate.fixed_face))) &&
+                       std::isfinite(mate.offset_mm);
+    if (!sound) return "mate " + std::to_string(number) + " is between unknown instances";
+  }
+  return std::nullopt;
+}
+
+std::optional<MateKind> mate_kind_from(std::string_view text) {
+  using enum MateKind;
+  for (const MateKind kind :
+       {ShaftInHole, HoleOnHole, BlindHoleOnHole, HoleOverShaft, FaceOnFace}) {
+    if (to_string(kind) == text) return kind;
+  }
+  return std::nullopt;
+}
+
+std::optional<CheckMode> check_mode_from(std::string_view text) {
+  for (const CheckMode mode : {CheckMode::Block, CheckMode::Warn, CheckMode::Off}) {
+    if (to_string(mode) == text) return mode;
+  }
+  return std::nullopt;
+}
+
+}  // namespace dowel

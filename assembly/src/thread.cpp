@@ -1,0 +1,154 @@
+#include "dowel/assembly/thread.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dowel/kernel/check.h"
+#include "dowel/kernel/tolerance.h"
+
+namespace dowel {
+namespace {
+
+constexpr std::array<MetricThread, 13> kMetricThreads{{{3.0, 0.5, 2.5},
+                                                       {4.0, 0.7, 3.3},
+                                                       {5.0, 0.8, 4.2},
+                                                       {6.0, 1.0, 5.0},
+                                                       {8.0, 1.25, 6.8},
+                                                       {10.0, 1.5, 8.5},
+                                                       {12.0, 1.75, 10.2},
+                                                       {14.0, 2.0, 12.0},
+                                                       {16.0, 2.0, 14.0},
+                                                       {18.0, 2.5, 15.5},
+                                                       {20.0, 2.5, 17.5},
+                                                       {22.0, 2.5, 19.5},
+                                                       {24.0, 3.0, 21.0}}};
+
+bool is_core_hole(const MetricThread& thread, double hole_diameter_mm) {
+  return hole_diameter_mm >= thread.minor_mm() - kTapDrillSlack_mm &&
+         hole_diameter_mm <= thread.tap_drill_mm + kTapDrillSlack_mm;
+}
+
+bool is_core_hole(const MetricThread& thread, const HoleSegment& segment) {
+  return segment.type == HoleSegment::Type::Cylinder && is_core_hole(thread, segment.diameter_mm);
+}
+
+/// A stretch of depth along a hole.
+struct Stretch {
+  double from_mm = 0.0;
+  double to_mm = 0.0;
+};
+
+/// The core hole `segments[i]` with the chamfers beside it that narrow towards it.
+Stretch with_chamfers(const std::vector<HoleSegment>& segments, std::size_t i) {
+  Stretch stretch{segments[i].from_mm, segments[i].to_mm};
+  if (i > 0 && segments[i - 1].type == HoleSegment::Type::Cone &&
+      segments[i - 1].diameter_mm > segments[i - 1].diameter_end_mm) {
+    stretch.from_mm = segments[i - 1].from_mm;
+  }
+  if (i + 1 < segments.size() && segments[i + 1].type == HoleSegment::Type::Cone &&
+      segments[i + 1].diameter_mm < segments[i + 1].diameter_end_mm) {
+    stretch.to_mm = segments[i + 1].to_mm;
+  }
+  return stretch;
+}
+
+bool is_coaxial(const Feature& shaft, const Pose& X_HS, const Feature& hole, double depth_mm) {
+  const Eigen::Vector3d direction_H = X_HS.rotation() * shaft.direction;
+  if (hole.direction.cross(direction_H).norm() > kCoaxial_rad) return false;
+  const Eigen::Vector3d on_bore = hole.origin + depth_mm * hole.direction;
+  const Eigen::Vector3d to_bore = on_bore - X_HS * shaft.origin;
+  return (to_bore - to_bore.dot(direction_H) * direction_H).norm() <= kCoaxial_mm;
+}
+
+}  // namespace
+
+std::span<const MetricThread> metric_threads() {
+  return kMetricThreads;
+}
+
+const MetricThread* thread_of_shaft(double shaft_diameter_mm) {
+  const auto* const found = std::ranges::find_if(kMetricThreads, [=](const MetricThread& thread) {
+    return std::abs(thread.nominal_mm - shaft_diameter_mm) <= kThreadNominalSlack_mm;
+  });
+  return found == kMetricThreads.end() ? nullptr : found;
+}
+
+bool forms_thread(double shaft_diameter_mm, double hole_diameter_mm) {
+  const MetricThread* thread = thread_of_shaft(shaft_diameter_mm);
+  return thread != nullptr && is_core_hole(*thread, hole_diameter_mm);
+}
+
+AxisFit fit_on_axis(const Feature& shaft, const Pose& X_WS, const Feature& hole, const Pose& X_WH) {
+  DOWEL_EXPECTS(shaft.kind == FeatureKind::Shaft && hole.kind == FeatureKind::Hole);
+  const Pose X_HS = X_WH.inverse() * X_WS;
+  const auto depth_of = [&](double along_shaft_mm) {
+    const Eigen::Vector3d point = X_HS * (shaft.origin + along_shaft_mm * shaft.direction);
+    return hole.direction.dot(point - hole.origin);
+  };
+  const auto [low_mm, high_mm] = std::minmax({depth_of(0.0), depth_of(shaft.depth_mm)});
+
+  AxisFit fit;
+  const HoleSegment* opening = nullptr;
+  bool inside = false;
+  for (const HoleSegment& segment : hole.segments) {
+    if (segment.type != HoleSegment::Type::Cylinder) continue;
+    if (opening == nullptr) opening = &segment;
+    // A shaft that ends on a step, give or take rounding, is not in what lies beyond.
+    if (std::min(high_mm, segment.to_mm) - std::max(low_mm, segment.from_mm) <= kCoincident_mm) {
+      continue;
+    }
+    inside = true;
+    if (shaft.diameter_mm <= segment.diameter_mm + kShaftExcess_mm) continue;
+    if (forms_thread(shaft.diameter_mm, segment.diameter_mm)) {
+      fit.thread = true;
+    } else if (fit.obstacle == nullptr) {
+      fit.obstacle = &segment;
+    }
+  }
+  if (!inside && opening != nullptr && shaft.diameter_mm > opening->diameter_mm + kShaftExcess_mm &&
+      !forms_thread(shaft.diameter_mm, opening->diameter_mm)) {
+    fit.obstacle = opening;
+  }
+  return fit;
+}
+
+std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT,
+                                         const Element& screw, const Pose& X_WS) {
+  std::vector<ThreadRelief> reliefs;
+  const Pose X_TS = X_WT.inverse() * X_WS;
+  for (const Feature& shaft : screw.features) {
+    if (shaft.kind != FeatureKind::Shaft) continue;
+    const MetricThread* thread = thread_of_shaft(shaft.diameter_mm);
+    if (thread == nullptr) continue;
+    for (const Feature& hole : tapped.features) {
+      if (hole.kind != FeatureKind::Hole) continue;
+      for (std::size_t i = 0; i < hole.segments.size(); ++i) {
+        const HoleSegment& segment = hole.segments[i];
+        if (!is_core_hole(*thread, segment)) continue;
+        if (!is_coaxial(shaft, X_TS, hole, 0.5 * (segment.from_mm + segment.to_mm))) continue;
+        const Stretch stretch = with_chamfers(hole.segments, i);
+        reliefs.push_back({.start = hole.origin + stretch.from_mm * hole.direction,
+                           .direction = hole.direction,
+                           .length_mm = stretch.to_mm - stretch.from_mm,
+                           .radius_mm = 0.5 * thread->nominal_mm});
+      }
+    }
+  }
+  return reliefs;
+}
+
+bool may_form_thread(const Element& tapped, const Element& screw) {
+  return std::ranges::any_of(screw.features, [&](const Feature& shaft) {
+    if (shaft.kind != FeatureKind::Shaft) return false;
+    const MetricThread* thread = thread_of_shaft(shaft.diameter_mm);
+    return thread != nullptr && std::ranges::any_of(tapped.features, [&](const Feature& hole) {
+             return hole.kind == FeatureKind::Hole &&
+                    std::ranges::any_of(hole.segments, [&](const HoleSegment& segment) {
+                      return is_core_hole(*thread, segment);
+                    });
+           });
+  });
+}
+
+}  // namespace dowel
