@@ -235,16 +235,15 @@ std::string to_text(const ProjectRows& rows) {
 ProjectRows rows_from_text(const std::string& text, const std::string& what) {
   return reading(what, [&] {
     const Json json = parse(text);
-    const Json none = Json::array();
+    const Json settings = json.value("settings", Json::object());
+    const Json instances = json.value("instances", Json::array());
+    const Json mates = json.value("mates", Json::array());
     ProjectRows rows;
-    const Json no_settings = Json::object();
-    for (const auto& item : json.value("settings", no_settings).items()) {
+    for (const auto& item : settings.items()) {
       rows.settings.push_back({item.key(), item.value().get<std::string>()});
     }
-    for (const Json& row : json.value("instances", none)) {
-      rows.instances.push_back(instance_from(row));
-    }
-    for (const Json& row : json.value("mates", none)) rows.mates.push_back(mate_from(row));
+    for (const Json& row : instances) rows.instances.push_back(instance_from(row));
+    for (const Json& row : mates) rows.mates.push_back(mate_from(row));
     return rows;
   });
 }
