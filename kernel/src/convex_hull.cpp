@@ -239,10 +239,9 @@ void Quickhull::expand(Index seed) {
 
 std::vector<Triangle> Quickhull::run(const std::vector<Index>& simplex) {
   start(simplex);
-  while (!open_.empty()) {
-    const Index f = open_.back();
-    open_.pop_back();
-    if (!facets_[f].is_dead) expand(f);
+  // First come, first served: the hull grows evenly on all sides, which keeps horizons short.
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    if (!facets_[open_[i]].is_dead) expand(open_[i]);
   }
   std::vector<Triangle> triangles;
   for (const Facet& facet : facets_) {
