@@ -1,0 +1,130 @@
+#include "dowel/catalog/search.h"
+
+#include <catch2/catch.hpp>
+
+#include "dowel/kernel/error.h"
+#include "program.h"
+#include "records.h"
+
+namespace {
+
+using dowel::closest_names;
+using dowel::Element;
+using dowel::Error;
+using dowel::matches;
+using dowel::parse_query;
+
+using Words = std::vector<std::string>;
+
+bool finds(const Element& element, const Words& terms) {
+  return matches(element, parse_query(terms));
+}
+
+}  // namespace
+
+TEST_CASE("Words are looked for in name, family, shape and features, whatever their case") {
+  Element block = dowel::testing::block_record("Riser-80").element;
+  block.family = "H40-12";
+  CHECK(finds(block, {}));
+  CHECK(finds(block, {"RISER"}));
+  CHECK(finds(block, {"h40"}));
+  CHECK(finds(block, {"block-cyl"}));
+  CHECK(finds(block, {"cb1"}));
+  CHECK(finds(block, {"shaft"}));
+  CHECK(finds(block, {"riser", "h40"}));
+  CHECK(finds(block, {"riser h40"}));
+  CHECK_FALSE(finds(block, {"riser", "clamp"}));
+}
+
+TEST_CASE("Numbers are compared with the box, the holes and the shafts") {
+  const Element block = dowel::testing::block_record("block").element;  // 80 x 40 x 20
+  CHECK(finds(block, {"length>=80"}));
+  CHECK(finds(block, {"length<=80"}));
+  CHECK(finds(block, {"l=80", "W=40", "height=20"}));
+  CHECK_FALSE(finds(block, {"length>80"}));
+  CHECK_FALSE(finds(block, {"length<80"}));
+  CHECK(finds(block, {"height=15..25"}));
+  CHECK_FALSE(finds(block, {"height=21..25"}));
+  CHECK(finds(block, {"hole=12"}));
+  CHECK_FALSE(finds(block, {"hole=11.99"}));
+  CHECK(finds(block, {"shaft==11.99"}));
+  CHECK_FALSE(finds(block, {"shaft=12"}));
+  CHECK(finds(block, {"d<12"}));
+  CHECK(finds(block, {"d>11.99"}));
+  CHECK_FALSE(finds(block, {"d>12"}));
+  CHECK(finds(block, {"depth=20"}));
+  CHECK(finds(block, {"holes=2"}));
+  CHECK(finds(block, {"volume>63999", "volume<64001"}));
+  CHECK(finds(block, {"block", "hole=12", "holes>1"}));
+}
+
+TEST_CASE("An element without holes has no hole of any size") {
+  Element block = dowel::testing::block_record("block").element;
+  block.features.clear();
+  CHECK_FALSE(finds(block, {"hole>=0"}));
+  CHECK_FALSE(finds(block, {"hole<1000"}));
+  CHECK(finds(block, {"holes=0"}));
+}
+
+TEST_CASE("Rounding in a box does not lose an element") {
+  Element block = dowel::testing::block_record("block").element;
+  block.obb.half_extents_mm.z() = 10.0 - 1e-13;
+  CHECK(finds(block, {"height>=20"}));
+}
+
+TEST_CASE("Blanks around a comparison do not matter") {
+  for (const Words& terms : {Words{"height >= 80", "x"},
+                             {"height", ">=", "80", "x"},
+                             {"height>=", "80 x"},
+                             {" height  >=80  x "}}) {
+    const dowel::SearchQuery query = parse_query(terms);
+    CAPTURE(terms);
+    REQUIRE(query.conditions.size() == 1);
+    CHECK(query.conditions[0].low == Approx(80.0).margin(0.001));
+    CHECK(query.words == Words{"x"});
+  }
+}
+
+TEST_CASE("A term that makes no sense is an error that names it", "[fault]") {
+  for (const char* term : {"height>=", "height>=abc", ">=80", "colour=3", "height=>80", "h=1..",
+                           "h=..2", "h=1e999", "h=nan", "h<>3", "=", "h=1=2", "h=12mm"}) {
+    CAPTURE(term);
+    CHECK_THROWS_AS(parse_query(Words{term}), Error);
+    CHECK_THROWS_WITH(parse_query(Words{term}), Catch::Contains(term));
+  }
+}
+
+TEST_CASE("A search gives those that match, names before families before features") {
+  const dowel::testing::TemporaryFolder folder;
+  dowel::Catalog catalog(folder / "c.db", dowel::Catalog::Access::ReadWrite);
+  const auto put = [&catalog](const std::string& name, const std::string& family) {
+    dowel::ElementRecord record = dowel::testing::block_record(name);
+    record.element.family = family;
+    catalog.put(dowel::testing::block_source(name), std::vector{record});
+  };
+  put("zz", "pin family");
+  put("b-pin", "");
+  put("pin-9", "");
+  put("aa", "");  // has a feature pin1
+  put("pin", "");
+  Words names;
+  for (const Element& element : search(catalog, parse_query(Words{"pin"}))) {
+    names.push_back(element.name);
+  }
+  CHECK(names == Words{"pin", "pin-9", "b-pin", "zz", "aa"});
+}
+
+TEST_CASE("The name that was meant is the first guess") {
+  const Words names{
+      "H40-12/riser-80x80x40", "H40-12/riser-80x80x80", "H40-12/stop", "pin-12", "plate", "Vise"};
+  CHECK(closest_names("plaet", names) == Words{"plate"});
+  CHECK(closest_names("PLATE", names) == Words{"plate"});
+  CHECK(closest_names("vice", names) == Words{"Vise"});
+  CHECK(closest_names("riser", names).size() == 2);
+  CHECK(closest_names("riser", names, 1).size() == 1);
+  CHECK(closest_names("riser-80x80x80", names).front() == "H40-12/riser-80x80x80");
+  CHECK(closest_names("h40-12/stopp", names) == Words{"H40-12/stop"});
+  CHECK(closest_names("turbine", names).empty());
+  CHECK(closest_names("", names).empty());
+  CHECK(closest_names(std::string(100'000, 'x'), names).empty());
+}
