@@ -49,7 +49,8 @@ class Page {
     this.sidebar.on_show = (instance, visible) => this.show(instance, visible);
     this.sidebar.on_select = (instance) => {
       this.select(instance === this.selected ? null : instance);
-      this.commands.fit();
+      if (this.selected) this.stage?.frame_with_context(instance);
+      else this.stage?.frame(this.stage.shown());
     };
     this.sidebar.on_hover = (instance) => {
       if (!this.stage) return;
@@ -57,10 +58,7 @@ class Page {
       this.stage.update_looks();
     };
     if (this.stage) {
-      this.stage.on_pick = (instance) => {
-        this.select(instance);
-        this.sidebar.reveal(instance);
-      };
+      this.stage.on_pick = (instance) => this.select(instance);
     }
     for (const button of document.querySelectorAll('button[data-view]')) {
       button.addEventListener('click', () => this.stage?.view(button.dataset.view));
@@ -104,6 +102,7 @@ class Page {
   select(instance) {
     this.selected = instance;
     this.update();
+    this.sidebar.reveal(instance);
   }
 
   show(instance, visible) {

@@ -18,6 +18,9 @@ const VIEWS = {
 };
 
 const ACCENT = new Color('#0b6bf2');
+const SELECTED = new Color('#7fb2ff');
+const FIT_MARGIN = 1.12;
+const CONTEXT_MARGIN = 2.2; // one instance and its neighbours
 const TURN_MS = 260;
 const CLICK_PIXELS = 4;
 
@@ -29,12 +32,9 @@ const LOOKS = {
     else material.color.copy(ACCENT);
   },
   selected: (material) => {
-    if (material.emissive) {
-      material.color.lerp(ACCENT, 0.35);
-      material.emissive.copy(ACCENT).multiplyScalar(0.25);
-    } else {
-      material.color.copy(ACCENT);
-    }
+    if (!material.emissive) material.color.copy(ACCENT);
+    // What collides stays red: its blue edges tell that it is selected.
+    else if (!material.name.startsWith('colliding')) material.color.copy(SELECTED);
   },
   ghost: (material) => {
     material.transparent = true;
@@ -52,6 +52,9 @@ export class Stage {
     this.scene = new Scene();
     this.camera = new OrthographicCamera();
     this.half_height = 1;
+    this.aspect = 1;
+    this.turn = null; // where the camera is on its way from and to
+    this.framed = null; // what fills the view
     this.selected = null;
     this.hovered = null;
     this.show_edges = true;
@@ -107,7 +110,10 @@ export class Stage {
     controls.zoomToCursor = true;
     controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN };
     controls.addEventListener('change', () => this.request_frame());
-    controls.addEventListener('start', () => { this.turn = null; });
+    controls.addEventListener('start', () => {
+      this.turn = null;
+      this.framed = null;
+    });
     return controls;
   }
 
@@ -188,28 +194,18 @@ export class Stage {
   }
 
   view(name, { turn = true } = {}) {
-    this.frame(this.shown(), VIEWS[name].clone().normalize(), turn);
+    this.frame(this.shown(), { direction: VIEWS[name].clone().normalize(), turn });
   }
 
   shown() {
     return this.instances.filter((instance) => instance.visible);
   }
 
-  // Turns to `direction` and moves until `instances` fill the view.
-  frame(instances, direction = this.direction(), turn = true) {
-    const box = this.box_of(instances);
-    const target = box.getCenter(new Vector3());
-    const probe = this.camera.clone();
-    probe.position.copy(direction);
-    probe.lookAt(0, 0, 0);
-    const seen = new Box3();
-    const to_view = probe.quaternion.clone().invert();
-    for (const x of [box.min.x, box.max.x]) for (const y of [box.min.y, box.max.y]) for (const z of [box.min.z, box.max.z]) {
-      seen.expandByPoint(new Vector3(x, y, z).sub(target).applyQuaternion(to_view));
-    }
-    const size = seen.getSize(new Vector3());
-    const half_height = 0.56 * Math.max(size.y, size.x / this.aspect, 1e-4);
-    const goal = { direction, target, half_height };
+  // Moves until `instances` fill the view, less a margin, as seen against `direction`. They go on
+  // filling it when the window changes, until the user moves the camera.
+  frame(instances, { direction = this.direction(), margin = FIT_MARGIN, turn = true } = {}) {
+    this.framed = { instances, direction, margin };
+    const goal = this.goal_of(this.framed);
     if (!turn) {
       this.place(goal);
       return;
@@ -223,6 +219,30 @@ export class Stage {
     this.request_frame();
   }
 
+  frame_with_context(instance) {
+    this.frame([instance], { margin: CONTEXT_MARGIN });
+  }
+
+  goal_of({ instances, direction, margin }) {
+    const box = this.box_of(instances);
+    const target = box.getCenter(new Vector3());
+    const probe = new OrthographicCamera();
+    probe.position.copy(direction);
+    probe.lookAt(0, 0, 0);
+    const to_view = probe.quaternion.invert();
+    const seen = new Box3();
+    for (const x of [box.min.x, box.max.x]) {
+      for (const y of [box.min.y, box.max.y]) {
+        for (const z of [box.min.z, box.max.z]) {
+          seen.expandByPoint(new Vector3(x, y, z).sub(target).applyQuaternion(to_view));
+        }
+      }
+    }
+    const size = seen.getSize(new Vector3());
+    const half_height = 0.5 * margin * Math.max(size.y, size.x / this.aspect, 1e-4);
+    return { direction, target, half_height };
+  }
+
   place({ direction, target, half_height }) {
     // Far enough that nothing is behind the camera, whatever the user turns to.
     const all = this.box_of(this.instances);
@@ -231,7 +251,7 @@ export class Stage {
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, 2 * reach);
     Object.assign(this.camera, { near: 0, far: 4 * reach, zoom: 1 });
-    this.resize();
+    this.update_projection();
     this.controls.update();
     this.request_frame();
   }
@@ -254,12 +274,18 @@ export class Stage {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (width === 0 || height === 0) return;
     this.aspect = width / height;
-    const ratio = Math.min(window.devicePixelRatio, 2);
-    const size = this.renderer.getSize(new Vector2());
-    if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
-      this.renderer.setPixelRatio(ratio);
-      this.renderer.setSize(width, height, false);
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.update_projection();
+    if (this.framed) {
+      const goal = this.goal_of(this.framed);
+      if (this.turn) this.turn.to = goal;
+      else this.place(goal);
     }
+    this.request_frame();
+  }
+
+  update_projection() {
     Object.assign(this.camera, {
       left: -this.half_height * this.aspect,
       right: this.half_height * this.aspect,
@@ -267,7 +293,6 @@ export class Stage {
       bottom: -this.half_height,
     });
     this.camera.updateProjectionMatrix();
-    this.request_frame();
   }
 
   // Draws once, soon: nothing is drawn while nothing changes.
