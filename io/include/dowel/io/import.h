@@ -40,6 +40,8 @@ struct ImportResult {
   enum class Status { Ok, Empty, Failed };
   Status status = Status::Failed;
   std::string reason;  ///< empty where Ok
+  /// What the reader found wrong and went on past: the geometry may differ from what was meant.
+  std::vector<std::string> warnings;
   std::vector<ImportedPart> parts;
   double seconds = 0.0;
 };
