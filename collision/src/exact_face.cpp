@@ -17,6 +17,11 @@ constexpr double kSheetSlacks = 4.0;
 /// Barycentric slack of "inside the triangle", relative: rounding only.
 constexpr double kInsideSlack = 1e-9;
 
+/// The search along an arc ends when the way to the asked point is this nearly at a right angle to
+/// it (radians; the distance is then right to half its square), or after so many steps.
+constexpr double kArcAccuracy = 1e-7;
+constexpr int kArcSteps = 24;
+
 /// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
 /// False where they are tangent there.
 bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
@@ -31,22 +36,6 @@ bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
     x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
   }
   return true;
-}
-
-/// Point of the curve f with g that is nearest to `p`, starting from a point `q` of a chord of it
-/// and sliding along the curve no further than `reach_mm`.
-Eigen::Vector3d nearest_on_rim(const Face& f, const Face& g, const Eigen::Vector3d& q,
-                               const Eigen::Vector3d& p, double reach_mm) {
-  Eigen::Vector3d x = q;
-  if (!to_intersection(f, g, x)) return closest_point(f.surface, q);
-  for (int step = 0; step < 2 && reach_mm > 0.0; ++step) {
-    const Eigen::Vector3d tangent =
-        distance_gradient(f.surface, x).cross(distance_gradient(g.surface, x)).normalized();
-    const double shift = std::clamp(tangent.dot(p - x), -reach_mm, reach_mm);
-    x += shift * tangent;
-    if (!to_intersection(f, g, x)) return closest_point(f.surface, q);
-  }
-  return x;
 }
 
 /// True where `c`, a point of the plane of a facet, lies on the face's side of the exact surface
@@ -71,24 +60,29 @@ bool ends_in_curve(const CollisionModel& model, const ModelTriangle& t, std::siz
 
 enum class Footing { Inside, Outside, Overhang };
 
+/// Whether `c`, a little beyond edge `i`, is seen from the edge at a right angle: the rim's arc
+/// over a chord lies there and nowhere else.
+bool is_over_chord(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d chord = t.corners[(i + 1) % 3] - t.corners[i];
+  const double along = chord.dot(c - t.corners[i]);
+  return along >= 0.0 && along <= chord.squaredNorm();
+}
+
 /// Whether the foot `c` on the plane of a planar facet belongs to the exact face: facets overhang
 /// the rims of holes and fall short of the rims of discs.
 Footing footing_on_plane(const CollisionModel& model, const ModelTriangle& t,
                          const Eigen::Vector3d& c) {
   bool outside = false;
+  bool overhang = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const double beyond = beyond_edge(t, i, c);
-    const bool curved = ends_in_curve(model, t, i);
-    if (!curved || std::abs(beyond) > t.slack_mm) {
-      outside = outside || beyond > 0.0;
-      continue;
-    }
-    if (!on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
-      if (beyond <= 0.0) return Footing::Overhang;
-      outside = true;
-    }
+    outside = outside || beyond > 0.0;
+    if (std::abs(beyond) > t.slack_mm || !ends_in_curve(model, t, i)) continue;
+    const bool on_side = on_face_side(model.face(t.neighbours[i]), t.edges[i], c);
+    if (beyond > 0.0 && on_side && is_over_chord(t, i, c)) return Footing::Inside;
+    overhang = overhang || (beyond <= 0.0 && !on_side);
   }
-  return outside ? Footing::Outside : Footing::Inside;
+  return outside ? Footing::Outside : overhang ? Footing::Overhang : Footing::Inside;
 }
 
 /// Whether the foot `c` on a curved surface lies over the facet, seen along the surface's normal.
@@ -110,28 +104,80 @@ FacePoint at(const Eigen::Vector3d& point, const Eigen::Vector3d& p, FacePoint::
   return {point, (p - point).squaredNorm(), place};
 }
 
+/// Nearest place to `p` of the arc over edge `i`: the curve in which the exact faces on both sides
+/// meet, between the corners of the edge. The root of "the tangent is at a right angle to the way
+/// to p" is sought along the chord by the Illinois rule.
+FacePoint nearest_on_arc(const CollisionModel& model, const ModelTriangle& t, std::size_t i,
+                         const Eigen::Vector3d& p) {
+  const Face& face = model.face(t.face);
+  const Face& beyond = model.face(t.neighbours[i]);
+  const Eigen::Vector3d& start = t.corners[i];
+  const Eigen::Vector3d& end = t.corners[(i + 1) % 3];
+  // How far p lies ahead along the curve, seen from its point x.
+  const auto ahead = [&](const Eigen::Vector3d& x) {
+    Eigen::Vector3d tangent =
+        distance_gradient(face.surface, x).cross(distance_gradient(beyond.surface, x));
+    if (tangent.dot(end - start) < 0.0) tangent = -tangent;
+    return tangent.dot(p - x);
+  };
+  double low = 0.0;
+  double high = 1.0;
+  double ahead_low = ahead(start);
+  double ahead_high = ahead(end);
+  if (ahead_low <= 0.0) return at(start, p, FacePoint::Place::Corner);
+  if (ahead_high >= 0.0) return at(end, p, FacePoint::Place::Corner);
+  Eigen::Vector3d x = start;
+  int last_side = 0;
+  for (int step = 0; step < kArcSteps; ++step) {
+    const double s = low + (high - low) * ahead_low / (ahead_low - ahead_high);
+    x = start + s * (end - start);
+    if (!to_intersection(face, beyond, x)) break;
+    const double ahead_x = ahead(x);
+    if (std::abs(ahead_x) <= kArcAccuracy * (p - x).norm()) break;
+    const int side = ahead_x > 0.0 ? 1 : -1;
+    if (side > 0) {
+      low = s;
+      ahead_low = ahead_x;
+      if (side == last_side) ahead_high *= 0.5;
+    } else {
+      high = s;
+      ahead_high = ahead_x;
+      if (side == last_side) ahead_low *= 0.5;
+    }
+    last_side = side;
+  }
+  return at(
+      x, p,
+      t.edges[i] == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim);
+}
+
+/// True where edge `i` is the chord of a curve in which two exact faces meet.
+bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
+  return t.slack_mm > 0.0 &&
+         (t.edges[i] == EdgeShape::Convex || t.edges[i] == EdgeShape::Concave) &&
+         is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
+}
+
 /// Nearest place on the rim of the patch, once it is known not to be inside.
 FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriangle& t,
                                   const TrianglePoint& q, const Eigen::Vector3d& p) {
-  const Face& face = model.face(t.face);
-  if (q.region >= 4) return at(q.point, p, FacePoint::Place::Corner);
-  const auto i = static_cast<std::size_t>(q.region - 1);
-  const Eigen::Vector3d lifted = closest_point(face.surface, q.point);
-  switch (t.edges[i]) {
-    case EdgeShape::Inner:
-    case EdgeShape::Smooth:
-      return at(lifted, p, FacePoint::Place::Face);
-    case EdgeShape::Convex:
-    case EdgeShape::Concave:
-      break;
+  if (q.region >= 4) {
+    // The arcs that end at this corner may come nearer than the corner itself.
+    const auto corner = static_cast<std::size_t>(q.region - 4);
+    FacePoint best = at(q.point, p, FacePoint::Place::Corner);
+    for (const std::size_t i : {corner, (corner + 2) % 3}) {
+      if (!is_chord(model, t, i)) continue;
+      const FacePoint on_arc = nearest_on_arc(model, t, i, p);
+      if (on_arc.distance_squared_mm2 < best.distance_squared_mm2) best = on_arc;
+    }
+    return best;
   }
-  const auto place =
-      t.edges[i] == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim;
-  const Face& beyond = model.face(t.neighbours[i]);
-  if (t.slack_mm == 0.0 || !is_exact(face) || !is_exact(beyond)) return at(lifted, p, place);
-  const double to_end =
-      std::min((q.point - t.corners[i]).norm(), (q.point - t.corners[(i + 1) % 3]).norm());
-  return at(nearest_on_rim(face, beyond, q.point, p, to_end), p, place);
+  const auto i = static_cast<std::size_t>(q.region - 1);
+  if (is_chord(model, t, i)) return nearest_on_arc(model, t, i, p);
+  const FacePoint::Place place = t.edges[i] == EdgeShape::Convex    ? FacePoint::Place::ConvexRim
+                                 : t.edges[i] == EdgeShape::Concave ? FacePoint::Place::ConcaveRim
+                                                                    : FacePoint::Place::Face;
+  return at(closest_point(model.face(t.face).surface, q.point), p, place);
 }
 
 }  // namespace

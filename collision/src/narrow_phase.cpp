@@ -235,8 +235,7 @@ class Judge {
         const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
         const NearestPoint near_b = pair_.b.nearest(on_a);
         on_b = near_b.point;
-        gap = near_a.inside || near_b.inside ? std::min(near_a.distance_mm, near_b.distance_mm)
-                                             : near_b.distance_mm;
+        gap = near_b.inside ? 0.0 : near_b.distance_mm;
         middle = 0.5 * (on_a + on_b);
         if (gap <= tolerance || previous - gap < 1e-3 * tolerance) break;
         previous = gap;

@@ -1,0 +1,131 @@
+#include "dowel/collision/model.h"
+
+#include <catch2/catch.hpp>
+
+#include "dowel/kernel/error.h"
+#include "random_geometry.h"
+#include "solids.h"
+
+using dowel::CollisionModel;
+using dowel::FacetedSolid;
+using dowel::NearestPoint;
+namespace testing = dowel::testing;
+
+namespace {
+
+CollisionModel model_of(FacetedSolid solid) {
+  return {std::make_shared<const FacetedSolid>(std::move(solid)), {}};
+}
+
+/// Signed distance from a solid cylinder on z = 0, negative inside.
+double cylinder_distance(const Eigen::Vector3d& p, double radius, double height) {
+  const double radial = std::hypot(p.x(), p.y()) - radius;
+  const double axial = std::max(-p.z(), p.z() - height);
+  if (radial > 0 && axial > 0) return std::hypot(radial, axial);
+  return std::max(radial, axial);
+}
+
+double signed_distance(const NearestPoint& near) {
+  return near.inside ? -near.distance_mm : near.distance_mm;
+}
+
+}  // namespace
+
+TEST_CASE("the distance from a coarse cylinder is that of the exact cylinder", "[property]") {
+  const auto segments = GENERATE(16U, 26U, 90U);
+  CAPTURE(segments);
+  const CollisionModel model = model_of(testing::cylinder(6.0, 20.0, segments));
+  CHECK(model.max_slack_mm() > 1e-4);
+  testing::RandomGeometry random(5);
+  int inside = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    Eigen::Vector3d p = random.point(12.0) + Eigen::Vector3d(0, 0, 10);
+    if (i % 2 == 0) {  // close to the wall, within the facet error of a coarse mesh
+      const double angle = random.uniform(0, 7);
+      const double r = 6.0 + random.uniform(-0.2, 0.2);
+      p = {r * std::cos(angle), r * std::sin(angle), random.uniform(-0.3, 20.3)};
+    }
+    const double truth = cylinder_distance(p, 6.0, 20.0);
+    const double measured = signed_distance(model.nearest(p));
+    inside += truth < 0 ? 1 : 0;
+    worst = std::max(worst, std::abs(measured - truth));
+    if (std::abs(truth) > 1e-9) REQUIRE((measured < 0) == (truth < 0));
+  }
+  CHECK(worst < 1e-9);
+  CHECK(inside > 4000);
+}
+
+TEST_CASE("near a hole the distance is that of the exact bore, also under its overhanging rim",
+          "[property]") {
+  const CollisionModel model = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 26));
+  testing::RandomGeometry random(6);
+  int in_air = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double angle = random.uniform(0, 7);
+    const double r = 6.0 + random.uniform(-0.3, 0.3);
+    const Eigen::Vector3d p(r * std::cos(angle), r * std::sin(angle), random.uniform(-0.3, 20.3));
+    // Near the bore the plate is the outside of a cylinder between two planes.
+    const double radial = 6.0 - r;
+    const double axial = std::max(-p.z(), p.z() - 20.0);
+    const double truth =
+        radial > 0 && axial > 0 ? std::hypot(radial, axial) : std::max(radial, axial);
+    const double measured = signed_distance(model.nearest(p));
+    in_air += truth > 0 ? 1 : 0;
+    REQUIRE(measured == Approx(truth).margin(1e-9));
+  }
+  CHECK(in_air > 5000);
+  CHECK(in_air < 15'000);
+}
+
+TEST_CASE("the tree finds what brute force finds", "[property]") {
+  const CollisionModel model = model_of(testing::merged(
+      testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20),
+      testing::transformed(dowel::Pose::from_translation({0, 0, 60}), testing::cone(10, 25, 24))));
+  testing::RandomGeometry random(7);
+  for (int i = 0; i < 3000; ++i) {
+    const Eigen::Vector3d p = random.point(60) + Eigen::Vector3d(0, 0, 30);
+    const NearestPoint fast = model.nearest(p);
+    const NearestPoint slow = model.nearest_brute_force(p);
+    REQUIRE(fast.distance_mm == slow.distance_mm);
+  }
+}
+
+TEST_CASE("parity of a ray agrees with the winding number", "[property]") {
+  const CollisionModel model =
+      model_of(testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20));
+  testing::RandomGeometry random(8);
+  int inside = 0;
+  for (int i = 0; i < 5000; ++i) {
+    Eigen::Vector3d p = random.point(32);
+    if (i % 4 == 0)
+      p = {std::round(p.x()), std::round(p.y()), std::round(p.z())};  // on edges, planes
+    const double winding = model.winding_number(p);
+    if (std::abs(winding - std::round(winding)) > 1e-6) continue;  // on the surface
+    REQUIRE(model.facets_contain(p) == (winding > 0.5));
+    inside += winding > 0.5 ? 1 : 0;
+  }
+  CHECK(inside > 500);
+}
+
+TEST_CASE("each component has a point deep inside it, and a cavity has none") {
+  const CollisionModel two = model_of(testing::merged(
+      testing::box({10, 20, 30}),
+      testing::transformed(dowel::Pose::from_translation({100, 0, 0}), testing::sphere(8, 24))));
+  REQUIRE(two.inner_points().size() == 2);
+  for (const auto& inner : two.inner_points()) CHECK(inner.depth_mm > 3.0);
+  const CollisionModel hollow =
+      model_of(testing::hollowed(testing::box({30, 30, 30}), testing::box({20, 20, 20})));
+  for (const auto& inner : hollow.inner_points()) {
+    CHECK(inner.depth_mm > 1.0);
+    CHECK(inner.depth_mm < 5.0 + 1e-9);
+    CHECK(inner.point.cwiseAbs().maxCoeff() > 10.0);
+  }
+}
+
+TEST_CASE("an open mesh is refused") {
+  FacetedSolid open = testing::box({1, 1, 1});
+  open.triangles.pop_back();
+  open.face_of.pop_back();
+  CHECK_THROWS_AS(model_of(open), dowel::Error);
+}

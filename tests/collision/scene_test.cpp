@@ -1,0 +1,144 @@
+#include "dowel/collision/scene.h"
+
+#include <catch2/catch.hpp>
+
+#include "dowel/kernel/error.h"
+#include "random_geometry.h"
+#include "solids.h"
+
+using dowel::BodyId;
+using dowel::CollisionElement;
+using dowel::CollisionScene;
+using dowel::FacetedSolid;
+using dowel::Pose;
+using dowel::Verdict;
+namespace testing = dowel::testing;
+
+namespace {
+
+std::shared_ptr<const CollisionElement> box_element(const Eigen::Vector3d& size,
+                                                    int* loads = nullptr) {
+  return std::make_shared<const CollisionElement>(
+      dowel::Obb{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity(), 0.5 * size}, [size, loads] {
+        if (loads != nullptr) ++*loads;
+        return std::make_shared<const FacetedSolid>(testing::box(size));
+      });
+}
+
+}  // namespace
+
+TEST_CASE("no facets are loaded for a part that no move comes near, and each element's once") {
+  int near_loads = 0;
+  int far_loads = 0;
+  CollisionScene scene;
+  const auto near = box_element({10, 10, 10}, &near_loads);
+  scene.add(near, Pose());
+  scene.add(near, Pose::from_translation({0, 10, 0}));
+  scene.add(box_element({10, 10, 10}, &far_loads), Pose::from_translation({500, 0, 0}));
+  const BodyId tool = scene.add(box_element({5, 5, 5}), Pose::from_translation({0, 0, 100}));
+  const std::array<BodyId, 1> moving{tool};
+  for (const double z : {100.0, 50.0, 7.5, 7.0}) {
+    const std::array<Pose, 1> poses{Pose::from_translation({0, 5, z})};
+    const auto verdicts = scene.check(moving, poses, {});
+    CHECK(worst(verdicts) == (z > 10     ? Verdict::Clear
+                              : z == 7.5 ? Verdict::Contact
+                                         : Verdict::Interference));
+    if (z < 10) CHECK(verdicts.size() == 2);
+  }
+  CHECK(near_loads == 1);
+  CHECK(far_loads == 0);
+}
+
+TEST_CASE("a unit is not checked against itself") {
+  CollisionScene scene;
+  const auto element = box_element({10, 10, 10});
+  const std::array<BodyId, 2> unit{scene.add(element, Pose()),
+                                   scene.add(element, Pose::from_translation({5, 0, 0}))};
+  scene.add(element, Pose::from_translation({50, 0, 0}));
+  const std::array<Pose, 2> apart{scene.pose(unit[0]), scene.pose(unit[1])};
+  CHECK(scene.check(unit, apart, {}).empty());
+  const std::array<Pose, 2> moved{Pose::from_translation({36, 0, 0}),
+                                  Pose::from_translation({41, 0, 0})};
+  const auto verdicts = scene.check(unit, moved, {});
+  REQUIRE(verdicts.size() == 1);
+  CHECK(verdicts[0].moving == unit[1]);
+  CHECK(scene.check_all({}).size() == 1);  // the two of the unit overlap
+}
+
+TEST_CASE("all pairs of a scene are those that each body alone finds", "[property]") {
+  testing::RandomGeometry random(21);
+  CollisionScene scene;
+  const auto element = box_element({10, 8, 6});
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 60; ++i) bodies.push_back(scene.add(element, random.pose(25)));
+  const auto all = scene.check_all({});
+  std::size_t found = 0;
+  for (const BodyId body : bodies) {
+    const std::array<BodyId, 1> moving{body};
+    const std::array<Pose, 1> poses{scene.pose(body)};
+    found += scene.check(moving, poses, {}).size();
+  }
+  CHECK(found == 2 * all.size());
+  CHECK(all.size() > 20);
+}
+
+TEST_CASE("a removed body is no longer met and its id may come back") {
+  CollisionScene scene;
+  const auto element = box_element({10, 10, 10});
+  const BodyId first = scene.add(element, Pose());
+  const BodyId second = scene.add(element, Pose::from_translation({1, 0, 0}));
+  CHECK(scene.check_all({}).size() == 1);
+  scene.remove(first);
+  CHECK(scene.check_all({}).empty());
+  CHECK(scene.size() == 1);
+  CHECK_THROWS_AS(scene.remove(first), std::logic_error);
+  scene.add(element, Pose::from_translation({2, 0, 0}));
+  CHECK(scene.check_all({}).size() == 1);
+  scene.move(second, Pose::from_translation({100, 0, 0}));
+  CHECK(scene.check_all({}).empty());
+}
+
+TEST_CASE("a screw may overlap the thread it is declared for and nothing else") {
+  CollisionScene scene;
+  const auto plate_solid = std::make_shared<const FacetedSolid>(
+      testing::plate_with_holes({60, 60, 20}, {{0, 0, 5.053}}, 24));
+  const auto screw_solid = std::make_shared<const FacetedSolid>(testing::cylinder(6.0, 30, 24));
+  const auto element = [](const std::shared_ptr<const FacetedSolid>& solid) {
+    const dowel::Aabb box = dowel::bounds(solid->vertices).padded(0.2);
+    return std::make_shared<const CollisionElement>(
+        dowel::Obb{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.size()},
+        [solid] { return solid; });
+  };
+  const BodyId plate = scene.add(element(plate_solid), Pose());
+  const BodyId screw = scene.add(element(screw_solid), Pose::from_translation({0, 0, -5}));
+  CHECK(worst(scene.check_all({})) == Verdict::Interference);
+  scene.set_reliefs(screw, plate, {{{0, 0, 5}, Eigen::Vector3d::UnitZ(), 20, 6.0}});
+  CHECK(worst(scene.check_all({})) == Verdict::Contact);
+  scene.set_reliefs(plate, screw, {{{0, 0, 0}, Eigen::Vector3d::UnitZ(), 20, 6.0}});
+  CHECK(worst(scene.check_all({})) == Verdict::Contact);
+  // Tilted or off its axis it is no longer in its thread.
+  scene.move(screw, Pose::from_translation({0.5, 0, -5}));
+  CHECK(worst(scene.check_all({})) == Verdict::Interference);
+  scene.set_reliefs(plate, screw, {});
+  scene.move(screw, Pose::from_translation({0, 0, -5}));
+  CHECK(worst(scene.check_all({})) == Verdict::Interference);
+}
+
+TEST_CASE("the same queries give the same verdicts and counters again", "[determinism]") {
+  const auto run = [] {
+    testing::RandomGeometry random(22);
+    CollisionScene scene;
+    const auto element = std::make_shared<const CollisionElement>(
+        dowel::Obb{{0, 0, 10}, Eigen::Matrix3d::Identity(), {6.2, 6.2, 10}},
+        [] { return std::make_shared<const FacetedSolid>(testing::cylinder(6, 20, 26)); });
+    for (int i = 0; i < 40; ++i) scene.add(element, random.pose(40));
+    const auto verdicts = scene.check_all({});
+    std::vector<double> numbers{static_cast<double>(scene.counters().triangle_tests)};
+    for (const auto& v : verdicts) {
+      numbers.insert(numbers.end(), {v.pair.depth_mm, v.pair.gap_mm, v.pair.witness_W.x()});
+    }
+    return numbers;
+  };
+  CHECK(run() == run());
+  CHECK(run().size() > 10);
+}
