@@ -1,0 +1,404 @@
+// dowel catalog build, list, show, search, lint.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "commands.h"
+#include "dowel/catalog/catalog.h"
+#include "dowel/catalog/lint.h"
+#include "dowel/catalog/search.h"
+#include "dowel/io/catalog_build.h"
+#include "dowel/kernel/error.h"
+#include "element_json.h"
+#include "json.h"
+#include "progress.h"
+#include "table.h"
+
+namespace dowel::tools {
+namespace {
+
+using Align = Table::Align;
+
+constexpr const char* kRed = "31";
+constexpr const char* kGreen = "32";
+constexpr const char* kYellow = "33";
+
+Catalog open(const std::string& file) {
+  return Catalog(file, Catalog::Access::ReadOnly);
+}
+
+/// "1 element", "2 elements"
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string size_text(const Element& element) {
+  const Eigen::Vector3d size = box_size_mm(element);
+  return short_number(size.x()) + " x " + short_number(size.y()) + " x " + short_number(size.z());
+}
+
+/// Coordinates to a tenth of a micrometre, so that rounding does not show.
+std::string point_text(const Eigen::Vector3d& point) {
+  constexpr double kSteps_per_mm = 1.0e4;
+  std::string text;
+  for (const double coordinate : point) {
+    // Adding zero turns a negative zero into zero.
+    const double rounded = std::round(coordinate * kSteps_per_mm) / kSteps_per_mm + 0.0;
+    text += (text.empty() ? "" : ", ") + short_number(rounded);
+  }
+  return text;
+}
+
+// ---- build -------------------------------------------------------------------------------------
+
+struct BuildArguments {
+  std::vector<std::string> paths;
+  std::string output;
+  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
+  bool force = false;
+  std::optional<std::string> licence;
+  bool json = false;
+};
+
+bool has_elements(const BuiltFile& file) {
+  return file.status == BuildStatus::Ok || file.status == BuildStatus::Unchanged;
+}
+
+Json to_json(const BuiltFile& file) {
+  Json json;
+  json["file"] = file.file;
+  json["status"] = to_string(file.status);
+  if (has_elements(file)) {
+    json["elements"] = file.elements;
+  } else {
+    json["reason"] = file.reason;
+  }
+  json["seconds"] = file.seconds;
+  return json;
+}
+
+std::string to_text(const BuiltFile& file) {
+  const char* const colour = file.status == BuildStatus::Failed  ? kRed
+                             : file.status == BuildStatus::Empty ? kYellow
+                                                                 : kGreen;
+  std::string status(to_string(file.status));
+  status.resize(std::string_view("unchanged").size(), ' ');
+  std::string what = file.reason;
+  if (has_elements(file)) {
+    what.clear();
+    for (const std::string& element : file.elements) what += (what.empty() ? "" : ", ") + element;
+  }
+  return coloured(status, colour) + "  " + printable(file.file) + ": " + printable(what);
+}
+
+std::size_t count(const std::vector<BuiltFile>& files, BuildStatus status) {
+  return static_cast<std::size_t>(std::ranges::count(files, status, &BuiltFile::status));
+}
+
+std::string build_summary(const std::vector<BuiltFile>& files, double seconds) {
+  std::size_t elements = 0;
+  for (const BuiltFile& file : files) elements += file.elements.size();
+  std::string text = counted(files.size(), "file") + ", " + counted(elements, "element") + ": ";
+  for (const BuildStatus status : {BuildStatus::Ok, BuildStatus::Unchanged, BuildStatus::Empty}) {
+    text += std::to_string(count(files, status)) + " " + std::string(to_string(status)) + ", ";
+  }
+  return text + std::to_string(count(files, BuildStatus::Failed)) + " failed; " +
+         duration_text(seconds);
+}
+
+int run_build(const BuildArguments& arguments) {
+  BuildOptions options;
+  options.jobs = arguments.jobs;
+  options.force = arguments.force;
+  options.licence = arguments.licence;
+  const std::vector<std::filesystem::path> paths(arguments.paths.begin(), arguments.paths.end());
+
+  const auto start = std::chrono::steady_clock::now();
+  Progress progress("files");
+  const auto report = [&](const BuiltFile& file, std::size_t done, std::size_t total) {
+    if (arguments.json) {
+      progress.clear();
+      print_line(to_line(to_json(file)));
+    } else if (file.status != BuildStatus::Unchanged) {
+      progress.clear();
+      print_line(to_text(file));
+    }
+    progress.update(done, total, file.file);
+    return true;
+  };
+  const std::vector<BuiltFile> files = build_catalog(paths, arguments.output, options, report);
+  progress.clear();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  if (!arguments.json) print_line(build_summary(files, taken.count()));
+
+  const std::size_t failed = count(files, BuildStatus::Failed);
+  if (failed == 0) return kDone;
+  return failed == files.size() ? kBadInput : kFindings;
+}
+
+void add_build(CLI::App& catalog, int& exit_code) {
+  const auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* const command = catalog.add_subcommand(
+      "build",
+      "Adds or refreshes the elements of STEP and mesh files. Unchanged files are skipped.");
+  command->add_option("PATH", arguments->paths, "files, and folders with all files in them")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "the catalogue; made where it is missing")
+      ->required()
+      ->type_name("CATALOG.db");
+  command->add_option("--jobs", arguments->jobs, "files read at a time")
+      ->check(CLI::Range(1U, 256U))
+      ->capture_default_str();
+  command->add_flag("--force", arguments->force, "reads unchanged files, too");
+  command->add_option("--licence", arguments->licence, "recorded with the elements")
+      ->type_name("TEXT");
+  command->add_flag("--json", arguments->json, "one line of JSON a file");
+  command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });
+}
+
+// ---- list and search ---------------------------------------------------------------------------
+
+void print_elements(const std::vector<Element>& elements, bool json) {
+  if (json) {
+    for (const Element& element : elements) print_line(to_line(to_summary_json(element)));
+    return;
+  }
+  Table table({{"name"},
+               {"family"},
+               {"shape"},
+               {"size in mm", Align::Right},
+               {"holes", Align::Right},
+               {"shafts", Align::Right}});
+  for (const Element& element : elements) {
+    table.add({element.name, element.family, std::string(to_string(element.shape)),
+               size_text(element), std::to_string(count_features(element, FeatureKind::Hole)),
+               std::to_string(count_features(element, FeatureKind::Shaft))});
+  }
+  if (!elements.empty()) print_line(table.text());
+  print_line(counted(elements.size(), "element"));
+}
+
+void add_list(CLI::App& catalog) {
+  struct Arguments {
+    std::string file;
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = catalog.add_subcommand("list", "Lists all elements.");
+  command->add_option("CATALOG.db", arguments->file)->required();
+  command->add_flag("--json", arguments->json, "one line of JSON an element");
+  command->callback([arguments] {
+    // The search for nothing finds everything, by name.
+    print_elements(search(open(arguments->file), {}), arguments->json);
+  });
+}
+
+void add_search(CLI::App& catalog) {
+  struct Arguments {
+    std::string file;
+    std::vector<std::string> terms;
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = catalog.add_subcommand(
+      "search",
+      "Lists the elements that match all terms: words in the name, family, shape or features, and "
+      "comparisons of length, width, height, hole, shaft, diameter, depth, holes or volume.");
+  command->footer("Example: dowel catalog search elements.db riser 'height>=80' hole=12");
+  command->add_option("CATALOG.db", arguments->file)->required();
+  command->add_option("TERM", arguments->terms, "riser, 'height>=80', hole=12, d=10..16")
+      ->required();
+  command->add_flag("--json", arguments->json, "one line of JSON an element");
+  command->callback([arguments] {
+    const SearchQuery query = parse_query(arguments->terms);
+    print_elements(search(open(arguments->file), query), arguments->json);
+  });
+}
+
+// ---- show --------------------------------------------------------------------------------------
+
+[[noreturn]] void fail_to_find(const Catalog& catalog, const std::string& name) {
+  std::string message = catalog.file().string() + ": has no element \"" + printable(name) + "\"";
+  std::string guesses;
+  for (const std::string& guess : catalog.similar_names(name)) {
+    guesses += (guesses.empty() ? "\"" : "\" or \"") + printable(guess);
+  }
+  if (!guesses.empty()) message += "; did you mean " + guesses + "\"?";
+  throw Error(ErrorCode::NotFound, message);
+}
+
+std::string describe(const Feature& feature) {
+  std::string text;
+  switch (feature.kind) {
+    case FeatureKind::Hole:
+      text = feature.through ? "through" : "blind";
+      if (!feature.blind_end.empty()) text += " (" + feature.blind_end + ")";
+      if (!feature.entry.empty()) text += " from " + feature.entry;
+      for (const HoleSegment& segment : feature.segments) {
+        text +=
+            "; " + std::string(to_string(segment.type)) + " " + short_number(segment.diameter_mm);
+        if (segment.type == HoleSegment::Type::Cone) {
+          text += " to " + short_number(segment.diameter_end_mm);
+        }
+        text += " at " + short_number(segment.from_mm) + ".." + short_number(segment.to_mm);
+      }
+      break;
+    case FeatureKind::Face:
+      text = short_number(feature.area_mm2) + " mm2";
+      break;
+    default:
+      break;
+  }
+  return text;
+}
+
+std::string features_text(const Element& element) {
+  Table table({{"feature"},
+               {"kind"},
+               {"diameter", Align::Right},
+               {"depth", Align::Right},
+               {"at"},
+               {"direction"},
+               {""}});
+  for (const Feature& feature : element.features) {
+    const bool has_diameter = feature.kind != FeatureKind::Face;
+    table.add({feature.name, std::string(to_string(feature.kind)),
+               has_diameter ? short_number(feature.diameter_mm) : "",
+               has_diameter ? short_number(feature.depth_mm) : "", point_text(feature.origin),
+               point_text(feature.direction), describe(feature)});
+  }
+  return table.text();
+}
+
+std::string to_text(const Element& element) {
+  const TriangleCounts& triangles = element.triangles;
+  const std::vector<std::pair<const char*, std::string>> lines{
+      {"name", element.name},
+      {"family", element.family},
+      {"shape", std::string(to_string(element.shape))},
+      {"size", size_text(element) + " mm"},
+      {"volume", short_number(element.volume_mm3) + " mm3"},
+      {"surface", short_number(element.surface_mm2) + " mm2"},
+      {"centre of mass", point_text(element.center_of_mass)},
+      {"solids", std::to_string(element.solids)},
+      {"triangles", std::to_string(triangles.total) + " (" + std::to_string(triangles.plane) +
+                        " plane, " + std::to_string(triangles.hole) + " hole, " +
+                        std::to_string(triangles.other) + " other), within " +
+                        short_number(element.facet_error_mm) + " mm"},
+      {"source", element.source + " (" + element.unit_in_file + ")"},
+      {"sha256", element.sha256},
+      {"licence", element.licence.empty() ? "not recorded" : element.licence}};
+  std::string text;
+  for (const auto& [title, value] : lines) {
+    std::string padded(title);
+    padded.resize(16, ' ');
+    text += padded + printable(value) + "\n";
+  }
+  return text + "\n" + features_text(element);
+}
+
+void add_show(CLI::App& catalog) {
+  struct Arguments {
+    std::string file;
+    std::string name;
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command =
+      catalog.add_subcommand("show", "Shows one element with its sizes and features.");
+  command->add_option("CATALOG.db", arguments->file)->required();
+  command->add_option("NAME", arguments->name, "of the element")->required();
+  command->add_flag("--json", arguments->json, "one line of JSON");
+  command->callback([arguments] {
+    const Catalog elements = open(arguments->file);
+    const std::optional<Element> element = elements.find(arguments->name);
+    if (!element) fail_to_find(elements, arguments->name);
+    print_line(arguments->json ? to_line(tools::to_json(*element)) : to_text(*element));
+  });
+}
+
+// ---- lint --------------------------------------------------------------------------------------
+
+Json to_json(const LintFinding& finding) {
+  Json json;
+  json["rule"] = finding.rule;
+  json["severity"] = to_string(finding.severity);
+  json["element"] = finding.element;
+  json["message"] = finding.message;
+  return json;
+}
+
+std::string to_text(const LintFinding& finding) {
+  const bool is_error = finding.severity == LintFinding::Severity::Error;
+  return coloured(to_string(finding.severity), is_error ? kRed : kYellow) + " " + finding.rule +
+         "  " + printable(finding.element) + ": " + printable(finding.message);
+}
+
+int run_lint(const std::string& file, bool json, LintFinding::Severity gate) {
+  const Catalog elements = open(file);
+  const std::vector<LintFinding> findings = lint(elements);
+  for (const LintFinding& finding : findings) {
+    print_line(json ? to_line(to_json(finding)) : to_text(finding));
+  }
+  const std::size_t checked = elements.names().size();
+  const auto errors = static_cast<std::size_t>(
+      std::ranges::count(findings, LintFinding::Severity::Error, &LintFinding::severity));
+  const std::size_t warnings = findings.size() - errors;
+  if (json) {
+    Json summary;
+    summary["elements"] = checked;
+    summary["errors"] = errors;
+    summary["warnings"] = warnings;
+    Json line;
+    line["summary"] = std::move(summary);
+    print_line(to_line(line));
+  } else {
+    print_line(counted(checked, "element") + ": " + counted(errors, "error") + ", " +
+               counted(warnings, "warning"));
+  }
+  const bool has_findings = gate == LintFinding::Severity::Error ? errors > 0 : !findings.empty();
+  return has_findings ? kFindings : kDone;
+}
+
+void add_lint(CLI::App& catalog, int& exit_code) {
+  struct Arguments {
+    std::string file;
+    std::string gate = "error";
+    bool json = false;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* const command = catalog.add_subcommand(
+      "lint", "Checks that the elements' data are sound and agree with each other.");
+  command->add_option("CATALOG.db", arguments->file)->required();
+  command->add_option("--gate", arguments->gate, "lowest severity that makes the exit code 1")
+      ->check(CLI::IsMember({"error", "warning"}))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "one line of JSON a finding, then a summary");
+  command->callback([arguments, &exit_code] {
+    const auto gate =
+        arguments->gate == "error" ? LintFinding::Severity::Error : LintFinding::Severity::Warning;
+    exit_code = run_lint(arguments->file, arguments->json, gate);
+  });
+}
+
+}  // namespace
+
+void add_catalog_commands(CLI::App& app, int& exit_code) {
+  CLI::App* const catalog =
+      app.add_subcommand("catalog", "Makes and reads catalogues of elements.");
+  catalog->require_subcommand(1);
+  add_build(*catalog, exit_code);
+  add_list(*catalog);
+  add_show(*catalog);
+  add_search(*catalog);
+  add_lint(*catalog, exit_code);
+}
+
+}  // namespace dowel::tools

@@ -1,0 +1,115 @@
+#include "element_json.h"
+
+#include <algorithm>
+
+namespace dowel::tools {
+namespace {
+
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
+}
+
+Json to_json(const HoleSegment& segment) {
+  Json json;
+  json["type"] = to_string(segment.type);
+  json["diameter"] = segment.diameter_mm;
+  if (segment.type == HoleSegment::Type::Cone) json["diameter_end"] = segment.diameter_end_mm;
+  json["from"] = segment.from_mm;
+  json["to"] = segment.to_mm;
+  return json;
+}
+
+Json to_json(const Feature& feature) {
+  Json json;
+  json["name"] = feature.name;
+  json["kind"] = to_string(feature.kind);
+  if (feature.kind != FeatureKind::Face) {
+    json["diameter"] = feature.diameter_mm;
+    json["depth"] = feature.depth_mm;
+  }
+  if (feature.kind == FeatureKind::Hole) {
+    json["through"] = feature.through;
+    json["blind_end"] = text_or_null(feature.blind_end);
+  }
+  Json axis;
+  axis["origin"] = tools::to_json(feature.origin);
+  axis["direction"] = tools::to_json(feature.direction);
+  json["axis"] = std::move(axis);
+  if (feature.kind == FeatureKind::Hole) {
+    json["entry"] = text_or_null(feature.entry);
+    json["segments"] = Json::array();
+    for (const HoleSegment& segment : feature.segments) {
+      json["segments"].push_back(to_json(segment));
+    }
+  }
+  if (feature.kind == FeatureKind::Face) json["area_mm2"] = feature.area_mm2;
+  return json;
+}
+
+Json to_json(const Obb& box) {
+  Json json;
+  json["center"] = tools::to_json(box.center);
+  json["axes"] = Json::array();
+  for (int axis = 0; axis < 3; ++axis) {
+    json["axes"].push_back(tools::to_json(Eigen::Vector3d(box.axes.col(axis))));
+  }
+  json["half_extents"] = tools::to_json(box.half_extents_mm);
+  return json;
+}
+
+Json to_json(const TriangleCounts& counts) {
+  Json json;
+  json["total"] = counts.total;
+  json["plane"] = counts.plane;
+  json["hole"] = counts.hole;
+  json["other"] = counts.other;
+  return json;
+}
+
+}  // namespace
+
+Eigen::Vector3d box_size_mm(const Element& element) {
+  return 2.0 * element.obb.half_extents_mm;
+}
+
+std::size_t count_features(const Element& element, FeatureKind kind) {
+  return static_cast<std::size_t>(std::ranges::count(element.features, kind, &Feature::kind));
+}
+
+Json to_json(const Element& element) {
+  Json json;
+  json["name"] = element.name;
+  json["family"] = element.family;
+  json["shape"] = to_string(element.shape);
+  json["unit_in_file"] = element.unit_in_file;
+  json["source"] = element.source;
+  json["sha256"] = element.sha256;
+  json["solids"] = element.solids;
+  json["volume_mm3"] = element.volume_mm3;
+  json["surface_mm2"] = element.surface_mm2;
+  json["obb"] = to_json(element.obb);
+  json["triangles"] = to_json(element.triangles);
+  json["facet_error_mm"] = element.facet_error_mm;
+  json["features"] = Json::array();
+  for (const Feature& feature : element.features) json["features"].push_back(to_json(feature));
+  json["center_of_mass"] = to_json(element.center_of_mass);
+  json["licence"] = element.licence;
+  if (element.colour) json["colour"] = *element.colour;
+  return json;
+}
+
+Json to_summary_json(const Element& element) {
+  Json json;
+  json["name"] = element.name;
+  json["family"] = element.family;
+  json["shape"] = to_string(element.shape);
+  json["size"] = to_json(box_size_mm(element));
+  json["volume_mm3"] = element.volume_mm3;
+  json["holes"] = count_features(element, FeatureKind::Hole);
+  json["shafts"] = count_features(element, FeatureKind::Shaft);
+  json["faces"] = count_features(element, FeatureKind::Face);
+  json["source"] = element.source;
+  return json;
+}
+
+}  // namespace dowel::tools

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "dowel/catalog/element.h"
+#include "json.h"
+
+namespace dowel::tools {
+
+/// All that is known of an element but its facets: what `catalog show --json` prints.
+Json to_json(const Element& element);
+
+/// One line of a list: name, sizes, numbers of features.
+Json to_summary_json(const Element& element);
+
+/// Edge lengths of the element's box in mm, along its axes.
+Eigen::Vector3d box_size_mm(const Element& element);
+
+/// How many features of a kind an element has.
+std::size_t count_features(const Element& element, FeatureKind kind);
+
+}  // namespace dowel::tools
