@@ -206,6 +206,15 @@ MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fi
   return {kind, Pose(rotation, translation)};
 }
 
+Pose upright_pose(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& up_W, const Pose& X_WR) {
+  return {nearest_rotation(X_WR, Eigen::Vector3d::UnitZ(), up_W), origin_W};
+}
+
+Pose standing_pose(const Feature& bottom, const PlacedFeature& face) {
+  const Pose X_WE = upright_pose(face.origin_W(), face.direction_W(), face.X_WI);
+  return X_WE * Pose::from_translation(-bottom.origin);
+}
+
 MateResidual mate_residual(const PlacedFeature& moving, const PlacedFeature& fixed,
                            const std::optional<Seat>& seat, const MateOptions& options) {
   const MateKind kind = mate_kind(*moving.feature, *fixed.feature);

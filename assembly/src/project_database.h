@@ -71,7 +71,4 @@ class ProjectDatabase {
   mutable SQLite::Database database_;
 };
 
-/// True where `file` starts as a project does.
-bool looks_like_project(const std::filesystem::path& file);
-
 }  // namespace dowel

@@ -70,6 +70,15 @@ MateKind mate_kind(const Feature& moving, const Feature& fixed);
 MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fixed,
                             const std::optional<Seat>& seat, const MateOptions& options);
 
+/// The pose at `origin_W` whose z axis is unit vector `up_W`, turned about it so that it is as near
+/// as can be to the orientation of `X_WR`.
+Pose upright_pose(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& up_W, const Pose& X_WR);
+
+/// Where an element stands with its face `bottom` (in its own frame, looking down: against z) on
+/// the placed face: the planes coincide, normals are opposite, centroid is on centroid, and it is
+/// turned as little as can be against the part it stands on.
+Pose standing_pose(const Feature& bottom, const PlacedFeature& face);
+
 /// How far two mated features are off each other now.
 struct MateResidual {
   double axis_mm = 0.0;    ///< between the axes, at the moving feature; 0 for faces

@@ -154,6 +154,9 @@ class Project {
   std::unique_ptr<Impl> impl_;
 };
 
+/// True where `file` starts as a project does.
+bool looks_like_project(const std::filesystem::path& file);
+
 /// The pose as a project stores it: w >= 0, and such that reading it back gives the same bits.
 Pose settled(const Pose& pose);
 

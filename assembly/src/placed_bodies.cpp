@@ -1,0 +1,201 @@
+#include "placed_bodies.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "dowel/assembly/thread.h"
+#include "dowel/kernel/check.h"
+
+namespace dowel {
+namespace {
+
+std::vector<std::uint32_t> hole_faces(const Element& element) {
+  std::vector<std::uint32_t> faces;
+  for (const Feature& feature : element.features) {
+    if (feature.kind == FeatureKind::Hole) {
+      faces.insert(faces.end(), feature.faces.begin(), feature.faces.end());
+    }
+  }
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
+/// Adds the reliefs that are not there yet: two poses on one axis give the same ones.
+void add_new(std::vector<ThreadRelief>& all, const std::vector<ThreadRelief>& more) {
+  for (const ThreadRelief& relief : more) {
+    const bool known = std::ranges::any_of(all, [&](const ThreadRelief& other) {
+      return other.start == relief.start && other.direction == relief.direction &&
+             other.length_mm == relief.length_mm && other.radius_mm == relief.radius_mm;
+    });
+    if (!known) all.push_back(relief);
+  }
+}
+
+ThreadRelief seen_from(const Pose& X_AB, ThreadRelief relief_B) {
+  relief_B.start = X_AB * relief_B.start;
+  relief_B.direction = X_AB.rotation() * relief_B.direction;
+  return relief_B;
+}
+
+}  // namespace
+
+PlacedBodies::PlacedBodies(FindElement find_element, LoadSolid load_solid)
+    : find_element_(std::move(find_element)), load_solid_(std::move(load_solid)) {}
+
+std::shared_ptr<const CollisionElement> PlacedBodies::shape(const std::string& element) {
+  auto& found = shapes_[element];
+  if (found == nullptr) {
+    const Element& description = find_element_(element);
+    found = std::make_shared<const CollisionElement>(
+        description.obb, [load = load_solid_, element] { return load(element); },
+        hole_faces(description));
+  }
+  return found;
+}
+
+void PlacedBodies::forget(const std::string& element) {
+  const bool used = std::ranges::any_of(
+      bodies_, [&](const auto& entry) { return entry.second.element == element; });
+  DOWEL_EXPECTS(!used);
+  shapes_.erase(element);
+  std::erase_if(may_thread_, [&](const auto& entry) {
+    return entry.first.first == element || entry.first.second == element;
+  });
+}
+
+void PlacedBodies::follow(const ProjectState& state) {
+  for (auto entry = bodies_.begin(); entry != bodies_.end();) {
+    const Instance* instance = state.find(entry->first);
+    // A name can come back as another element.
+    if (instance != nullptr && instance->element == entry->second.element) {
+      ++entry;
+      continue;
+    }
+    const BodyId id = entry->second.id;
+    scene_.remove(id);
+    names_.erase(id);
+    std::erase_if(relieved_, [&](const auto& pair) {
+      return pair.first.first == id || pair.first.second == id;
+    });
+    entry = bodies_.erase(entry);
+  }
+  for (const Instance* instance : state.in_order()) {
+    const auto found = bodies_.find(instance->name);
+    if (found == bodies_.end()) {
+      const BodyId id = scene_.add(shape(instance->element), instance->X_WI);
+      bodies_.emplace(instance->name,
+                      Body{id, instance->number, instance->element, instance->X_WI});
+      names_.emplace(id, instance->name);
+      relieve(instance->name, {instance->X_WI});
+    } else {
+      Body& body = found->second;
+      body.number = instance->number;
+      if (body.X_WI == instance->X_WI) continue;
+      scene_.move(body.id, instance->X_WI);
+      body.X_WI = instance->X_WI;
+      relieve(instance->name, {instance->X_WI});
+    }
+  }
+}
+
+bool PlacedBodies::may_thread(const std::string& tapped, const std::string& screw) {
+  const auto [entry, is_new] = may_thread_.try_emplace({tapped, screw}, false);
+  if (is_new) entry->second = may_form_thread(find_element_(tapped), find_element_(screw));
+  return entry->second;
+}
+
+void PlacedBodies::relieve(const std::string& name, const std::vector<Pose>& poses) {
+  const Body& body = bodies_.at(name);
+  for (const auto& [other_name, other] : bodies_) {
+    if (other.id == body.id) continue;
+    const bool taps = may_thread(body.element, other.element);
+    const bool screws = may_thread(other.element, body.element);
+    if (!taps && !screws) continue;
+    const Element& mine = find_element_(body.element);
+    const Element& theirs = find_element_(other.element);
+    // In the frame of the part that has the core hole, where they hold while the screw turns in.
+    std::vector<ThreadRelief> reliefs;
+    for (const Pose& X_WI : poses) {
+      if (taps) add_new(reliefs, thread_reliefs(mine, X_WI, theirs, other.X_WI));
+    }
+    const bool mine_first = !reliefs.empty();
+    for (const Pose& X_WI : poses) {
+      if (!screws) continue;
+      std::vector<ThreadRelief> more = thread_reliefs(theirs, other.X_WI, mine, X_WI);
+      if (mine_first) {
+        for (ThreadRelief& relief : more) relief = seen_from(X_WI.inverse() * other.X_WI, relief);
+      }
+      add_new(reliefs, more);
+    }
+    bool& relieved = relieved_[std::minmax(body.id, other.id)];
+    if (reliefs.empty() && !relieved) continue;
+    relieved = !reliefs.empty();
+    if (mine_first) {
+      scene_.set_reliefs(body.id, other.id, std::move(reliefs));
+    } else {
+      scene_.set_reliefs(other.id, body.id, std::move(reliefs));
+    }
+  }
+}
+
+std::vector<Touch> PlacedBodies::named(const std::vector<BodyVerdict>& verdicts) const {
+  const auto number = [&](const std::string& name) { return bodies_.at(name).number; };
+  std::vector<Touch> touches;
+  for (const BodyVerdict& verdict : verdicts) {
+    if (verdict.pair.verdict == Verdict::Clear) continue;
+    touches.push_back({names_.at(verdict.moving), names_.at(verdict.with), verdict.pair});
+  }
+  std::ranges::sort(touches, {}, [&](const Touch& touch) {
+    return std::pair(number(touch.instance), number(touch.with));
+  });
+  return touches;
+}
+
+std::vector<Touch> PlacedBodies::check(const std::string& moving, const Pose& X_WI,
+                                       double tolerance_mm) {
+  const Body& body = bodies_.at(moving);
+  relieve(moving, {X_WI});
+  const std::vector<Touch> touches =
+      named(scene_.check(std::array{body.id}, std::array{X_WI}, {.tolerance_mm = tolerance_mm}));
+  relieve(moving, {body.X_WI});
+  return touches;
+}
+
+PlacedBodies::Path PlacedBodies::sweep(const std::string& moving, const std::vector<Pose>& X_WU,
+                                       double tolerance_mm) {
+  DOWEL_EXPECTS(X_WU.size() >= 2);
+  const Body& body = bodies_.at(moving);
+  const Pose X_UB = X_WU.front().inverse() * body.X_WI;
+  relieve(moving, {body.X_WI, X_WU.back() * X_UB});
+  Path path;
+  path.X_WI_free = X_WU.back() * X_UB;
+  const auto legs = static_cast<double>(X_WU.size() - 1);
+  for (std::size_t leg = 0; leg + 1 < X_WU.size(); ++leg) {
+    const SweepResult result = scene_.sweep(std::array{body.id}, std::array{X_UB}, X_WU[leg],
+                                            X_WU[leg + 1], {.tolerance_mm = tolerance_mm});
+    if (result.verdict != Verdict::Interference) continue;
+    path.free_share = (static_cast<double>(leg) + result.time_of_impact) / legs;
+    path.X_WI_free = result.free_pose * X_UB;
+    path.touches = named(result.pairs);
+    break;
+  }
+  relieve(moving, {body.X_WI});
+  return path;
+}
+
+std::vector<Touch> PlacedBodies::check_all(double tolerance_mm) {
+  std::vector<Touch> touches = named(scene_.check_all({.tolerance_mm = tolerance_mm}));
+  for (Touch& touch : touches) {
+    if (bodies_.at(touch.with).number < bodies_.at(touch.instance).number) {
+      std::swap(touch.instance, touch.with);
+    }
+  }
+  std::ranges::sort(touches, {}, [&](const Touch& touch) {
+    return std::pair(bodies_.at(touch.instance).number, bodies_.at(touch.with).number);
+  });
+  return touches;
+}
+
+}  // namespace dowel
