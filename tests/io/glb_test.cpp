@@ -401,7 +401,7 @@ TEST_CASE("a scene that names what it does not have is refused") {
 
 TEST_CASE("the same scene gives the same GLB, also as a file") {
   const std::vector<std::byte> glb = to_glb(small_fixture());
-  CHECK(glb == to_glb(small_fixture()));
+  CHECK((glb == to_glb(small_fixture())));
   const TemporaryFolder folder;
   write_glb(folder / "scene.glb", small_fixture());
   const std::string file = read_text(folder / "scene.glb");

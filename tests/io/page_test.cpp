@@ -142,7 +142,7 @@ void require_well_formed(std::string_view html) {
 TEST_CASE("the page holds the scene as GLB") {
   const std::string page = to_page(small_fixture());
   const std::vector<std::byte> glb = from_base64(scene_of_page(page));
-  CHECK(glb == to_glb(small_fixture()));
+  CHECK((glb == to_glb(small_fixture())));
   CHECK(parse_glb(glb).document.at("nodes").size() == 6);
 }
 
@@ -153,7 +153,7 @@ TEST_CASE("base64 of the scene ends right for every remainder of three") {
     scene.title = title;
     const auto glb = to_glb(scene);
     remainders.insert(glb.size() % 3);
-    CHECK(from_base64(scene_of_page(to_page(scene))) == glb);
+    CHECK((from_base64(scene_of_page(to_page(scene))) == glb));
   }
   CHECK(remainders.size() == 3);
 }
@@ -210,7 +210,7 @@ TEST_CASE("a title that looks like a place to fill in is a title") {
   scene.title = "@SCENE@ and @TITLE@";
   const std::string page = to_page(scene);
   CHECK(between(page, "<title>", "</title>") == scene.title);
-  CHECK(from_base64(scene_of_page(page)) == to_glb(scene));
+  CHECK((from_base64(scene_of_page(page)) == to_glb(scene)));
 }
 
 TEST_CASE("a page appears whole or not at all") {
