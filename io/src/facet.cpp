@@ -29,6 +29,7 @@
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Solid.hxx>
 
+#include "crack.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/mesh_defect.h"
 #include "dowel/kernel/tolerance.h"
@@ -52,7 +53,8 @@ struct Piece {
   TopoDS_Solid solid;
   FacetedSolid facets;
   std::vector<TopoDS_Face> faces;
-  std::vector<bool> turned;  ///< per face: its facets were turned inside out
+  std::vector<bool> turned;      ///< per face: its facets were turned inside out
+  std::vector<double> moved_mm;  ///< per face: how far closing a crack moved its vertices
 };
 
 /// A mesh that holds, or why there is none.
@@ -128,17 +130,30 @@ void append_face(const TopoDS_Face& face, Piece& piece) {
   }
 }
 
-/// Welds and orients the facets of one solid and notes which faces were turned for it.
-void finish_mesh(Piece& piece) {
+/// Orients the facets of one solid and notes which faces were turned for it.
+void orient(Piece& piece) {
   FacetedSolid& facets = piece.facets;
-  facets.solid_count = 1;
-  weld(facets);
   const std::vector<Triangle> as_meshed = facets.triangles;
   orient_outward(facets);
   piece.turned.assign(piece.faces.size(), false);
   for (std::size_t t = 0; t < as_meshed.size(); ++t) {
     if (facets.triangles[t] != as_meshed[t]) piece.turned[facets.face_of[t]] = true;
   }
+}
+
+/// Makes one sound mesh of the facets of a solid's faces. What is wrong with it, if anything.
+std::optional<std::string> finish_mesh(Piece& piece) {
+  piece.facets.solid_count = 1;
+  piece.moved_mm.assign(piece.faces.size(), 0.0);
+  weld(piece.facets);
+  const FacetedSolid as_meshed = piece.facets;
+  orient(piece);
+  const auto defect = find_defect(piece.facets);
+  if (!defect) return std::nullopt;
+  piece.facets = as_meshed;
+  piece.moved_mm = close_cracks(piece.facets, kSewing_mm);
+  orient(piece);
+  return find_defect(piece.facets) ? defect : std::nullopt;
 }
 
 Attempt mesh(const TopoDS_Shape& shape, const Deflection& deflection) {
@@ -156,10 +171,9 @@ Attempt mesh(const TopoDS_Shape& shape, const Deflection& deflection) {
                                it.Current().Orientation() == TopAbs_REVERSED;
       if (is_boundary) append_face(TopoDS::Face(it.Current()), piece);
     }
-    finish_mesh(piece);
+    const auto defect = finish_mesh(piece);
     attempt.triangles += piece.facets.triangles.size();
-    if (!attempt.defect.empty()) continue;
-    if (auto defect = find_defect(piece.facets)) attempt.defect = *defect;
+    if (defect && attempt.defect.empty()) attempt.defect = *defect;
   }
   if (attempt.pieces.empty()) attempt.defect = "there is no solid";
   return attempt;
@@ -275,7 +289,7 @@ std::vector<FacetSums> sum_facets(const Piece& piece) {
 }
 
 void set_surface(const TopoDS_Face& face, const Vector3d& inside, double deflection_mm,
-                 Face& result) {
+                 double moved_mm, Face& result) {
   TopLoc_Location location;
   const auto facets = BRep_Tool::Triangulation(face, location);
   if (facets.IsNull()) return;
@@ -286,7 +300,7 @@ void set_surface(const TopoDS_Face& face, const Vector3d& inside, double deflect
       !(corner_error_mm(*facets, placement, result.surface) <= deflection_mm)) {
     result.surface = OtherSurface{};
   }
-  result.facet_error_mm = facet_error_mm(face, *facets, placement, result.surface);
+  result.facet_error_mm = facet_error_mm(face, *facets, placement, result.surface) + moved_mm;
   if (is_plane(result.surface) && result.facet_error_mm < kMinTolerance_mm) {
     result.facet_error_mm = 0.0;
   }
@@ -310,7 +324,7 @@ void describe_faces(Piece& piece, double deflection_mm) {
     inside[piece.facets.face_of[t]] = centroid(piece, t);
   }
   for (std::size_t f = 0; f < piece.faces.size(); ++f) {
-    set_surface(piece.faces[f], inside[f], deflection_mm, piece.facets.faces[f]);
+    set_surface(piece.faces[f], inside[f], deflection_mm, piece.moved_mm[f], piece.facets.faces[f]);
   }
   const std::vector<FacetSums> sums = sum_facets(piece);
   for (std::size_t f = 0; f < piece.faces.size(); ++f) {
