@@ -35,7 +35,7 @@ struct Feature {
   double diameter_mm = 0.0;  ///< hole: narrowest cylinder of the bore that a shaft passes; shaft
   double depth_mm = 0.0;     ///< hole: opening to end; shaft: length
   bool through = false;      ///< hole: open at both ends
-  std::string blind_end;     ///< blind hole: "flat" or "cone"; else empty
+  std::string blind_end;     ///< blind hole: "flat", "cone" or "round"; else empty
   std::string entry;         ///< hole: name of the planar face it opens on; may be empty
   std::vector<HoleSegment> segments;  ///< hole: by depth, from the opening
   double area_mm2 = 0.0;              ///< face

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "axis.h"
+#include "dowel/catalog/recognition.h"
+#include "dowel/kernel/check.h"
+#include "dowel/kernel/minimum_box.h"
+#include "face_graph.h"
+
+namespace dowel {
+namespace {
+
+struct Range {
+  double low_mm = std::numeric_limits<double>::infinity();
+  double high_mm = -std::numeric_limits<double>::infinity();
+  void extend(double value_mm) {
+    low_mm = std::min(low_mm, value_mm);
+    high_mm = std::max(high_mm, value_mm);
+  }
+};
+
+/// Heights along `axis` that the exact face can reach. Where its rim is level at an end (both
+/// corners of a rim edge at the extreme), a plane square to the axis bounds it and the vertices
+/// tell; a wavy rim may pass them by the facet error.
+Range heights(const FacetedSolid& solid, const FaceNode& node, double facet_error_mm,
+              const Axis& axis) {
+  Range range;
+  for (const std::uint32_t v : node.vertices) range.extend(axis.height_mm(solid.vertices[v]));
+  bool low_is_level = false;
+  bool high_is_level = false;
+  for (const RimEdge& edge : node.rim) {
+    const double a = axis.height_mm(solid.vertices[edge.from]);
+    const double b = axis.height_mm(solid.vertices[edge.to]);
+    if (std::abs(a - b) > kMinTolerance_mm) continue;
+    low_is_level = low_is_level || std::abs(a - range.low_mm) <= kMinTolerance_mm;
+    high_is_level = high_is_level || std::abs(a - range.high_mm) <= kMinTolerance_mm;
+  }
+  if (!low_is_level) range.low_mm -= facet_error_mm;
+  if (!high_is_level) range.high_mm += facet_error_mm;
+  return range;
+}
+
+/// Length of the part of the unit vector `direction` across `axis`.
+double sine(const Eigen::Vector3d& direction, const Eigen::Vector3d& axis) {
+  return direction.cross(axis).norm();
+}
+
+/// Upper bound of `direction . p` over the exact face, by its surface; infinite for a free-form
+/// one.
+struct SurfaceReach {
+  const FacetedSolid& solid;
+  const FaceNode& node;
+  double facet_error_mm;
+  Eigen::Vector3d direction;
+
+  double operator()(const OtherSurface& /*surface*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
+  double operator()(const PlaneSurface& /*surface*/) const {
+    return -std::numeric_limits<double>::infinity();
+  }
+  double operator()(const CylinderSurface& cylinder) const {
+    const Axis axis{cylinder.origin, cylinder.axis};
+    const Range range = heights(solid, node, facet_error_mm, axis);
+    const double slope = direction.dot(cylinder.axis);
+    return direction.dot(cylinder.origin) + std::max(slope * range.low_mm, slope * range.high_mm) +
+           cylinder.radius_mm * sine(direction, cylinder.axis);
+  }
+  double operator()(const ConeSurface& cone) const {
+    const Axis axis{cone.apex, cone.axis};
+    const Range range = heights(solid, node, facet_error_mm, axis);
+    double reach = -std::numeric_limits<double>::infinity();
+    for (const double height : {std::max(0.0, range.low_mm), range.high_mm}) {
+      reach =
+          std::max(reach, direction.dot(axis.at(height)) +
+                              height * std::tan(cone.half_angle_rad) * sine(direction, cone.axis));
+    }
+    return reach;
+  }
+  double operator()(const SphereSurface& sphere) const {
+    return direction.dot(sphere.center) + sphere.radius_mm;
+  }
+  double operator()(const TorusSurface& torus) const {
+    return direction.dot(torus.center) + torus.major_radius_mm * sine(direction, torus.axis) +
+           torus.minor_radius_mm;
+  }
+};
+
+/// A wall that curves around void between flat faces lies behind its own rim, which those bound.
+bool is_behind_its_rim(const std::vector<FaceNode>& graph, const FaceNode& node) {
+  if (!node.reversed || std::holds_alternative<TorusSurface>(node.surface)) return false;
+  return std::all_of(node.neighbours.begin(), node.neighbours.end(),
+                     [&](std::uint32_t next) { return is_plane(graph[next].surface); });
+}
+
+/// Reach of the exact solid along `direction`, from above and no further than the facet errors.
+double reach_mm(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
+                const Eigen::Vector3d& direction) {
+  std::vector<double> along;
+  along.reserve(solid.vertices.size());
+  double reach = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& p : solid.vertices) {
+    along.push_back(direction.dot(p));
+    reach = std::max(reach, along.back());
+  }
+  const double facets = reach;
+  for (std::size_t f = 0; f < graph.size(); ++f) {
+    const FaceNode& node = graph[f];
+    const double error = solid.faces[f].facet_error_mm;
+    if (!(error > 0.0)) continue;
+    double face = -std::numeric_limits<double>::infinity();
+    for (const std::uint32_t v : node.vertices) face = std::max(face, along[v]);
+    if (!(face + error > facets) || is_behind_its_rim(graph, node)) continue;
+    const double exact = std::visit(SurfaceReach{solid, node, error, direction}, node.surface);
+    reach = std::max(reach, std::min(face + error, std::max(exact, face)));
+  }
+  return reach;
+}
+
+}  // namespace
+
+Obb enclosing_box(const FacetedSolid& solid) {
+  DOWEL_EXPECTS(!solid.vertices.empty());
+  const std::vector<FaceNode> graph = face_graph(solid);
+  const Obb inner = minimum_box(solid.vertices);
+  Obb box = inner;
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = inner.axes.col(i);
+    const double middle = axis.dot(inner.center);
+    const double half = inner.half_extents_mm[i];
+    // Never smaller than the box found, whose own rounding is its maker's business.
+    const double high = std::max(half, reach_mm(solid, graph, axis) - middle);
+    const double low = std::max(half, reach_mm(solid, graph, -axis) + middle);
+    box.half_extents_mm[i] = 0.5 * (high + low);
+    shift[i] = 0.5 * (high - low);
+  }
+  box.center = inner.center + inner.axes * shift;
+  return box;
+}
+
+}  // namespace dowel
