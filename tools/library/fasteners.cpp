@@ -1,0 +1,226 @@
+// Standard fasteners: screws, nuts, washers, dowel pins.
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "builders.h"
+#include "dimensions.h"
+#include "holes.h"
+#include "solids.h"
+
+namespace dowel::library {
+namespace {
+
+const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
+const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
+constexpr std::array<double, 3> kScrewColour{0.16, 0.16, 0.18};
+constexpr std::array<double, 3> kFitScrewColour{0.30, 0.32, 0.20};
+constexpr std::array<double, 3> kSteelColour{0.62, 0.62, 0.65};
+
+std::string element_name(const std::string& name) {
+  return std::string(kSystem) + "/" + name;
+}
+
+/// Head of a socket head cap screw above z = 0, without its socket, as the end of an outline.
+void add_head(std::vector<Eigen::Vector2d>& outline, const SocketHead& head) {
+  const double radius_mm = head.head_diameter_mm / 2.0;
+  const double chamfer_mm = 0.06 * head.head_diameter_mm;
+  outline.insert(outline.end(), {{radius_mm, 0.0},
+                                 {radius_mm, head.head_height_mm - chamfer_mm},
+                                 {radius_mm - chamfer_mm, head.head_height_mm},
+                                 {0.0, head.head_height_mm}});
+}
+
+TopoDS_Shape with_socket(const TopoDS_Shape& screw, const SocketHead& head) {
+  return cut(screw, {hexagon(head.key_size_mm, head.head_height_mm - head.key_depth_mm,
+                             head.head_height_mm + 1.0)});
+}
+
+Part socket_screw(const FastenerSize& size, int length) {
+  Part part;
+  const std::string thread(size.thread.name);
+  const double length_mm = length;
+  const double radius_mm = size.thread.diameter_mm / 2.0;
+  const double chamfer_mm = size.thread.pitch_mm / 2.0;
+  part.name = element_name("screw-" + thread + "x" + std::to_string(length));
+  part.role = "fastener";
+  part.description = "socket head cap screw " + thread + "x" + std::to_string(length);
+  part.source = "like ISO 4762";
+  part.dimensions = {{"length", length_mm},
+                     {"diameter", size.thread.diameter_mm},
+                     {"head_diameter", size.socket.head_diameter_mm},
+                     {"head_height", size.socket.head_height_mm},
+                     {"key", size.socket.key_size_mm}};
+  std::vector<Eigen::Vector2d> outline{{0.0, -length_mm},
+                                       {radius_mm - chamfer_mm, -length_mm},
+                                       {radius_mm, -length_mm + chamfer_mm},
+                                       {radius_mm, 0.0}};
+  add_head(outline, size.socket);
+  part.solid = with_socket(turned(outline), size.socket);
+  part.features = {threaded(shaft("thread", {0.0, 0.0, 0.0}, kDown, size.thread.diameter_mm,
+                                  length_mm - chamfer_mm),
+                            thread),
+                   face("seat", {0.0, 0.0, 0.0}, kDown)};
+  part.colour = kScrewColour;
+  return part;
+}
+
+/// Locates and holds at once: its shank fits the 12H7 of an element and of the node below.
+Part fit_screw(int length) {
+  Part part;
+  const FastenerSize& size = fastener_size(kSystemThread);
+  const std::string thread(size.thread.name);
+  const double length_mm = length;
+  const double radius_mm = size.thread.diameter_mm / 2.0;
+  const double chamfer_mm = 1.0;
+  const double thread_z_mm = -length_mm + kFitScrewThread_mm;
+  const double shank_mm = length_mm - kFitScrewThread_mm - kSpigotRelief_mm;
+  part.name = element_name("fit-screw-" + thread + "x" + std::to_string(length));
+  part.role = "fastener";
+  part.description = "socket head fit screw, shank 12g6 " + plain(shank_mm) + " mm long";
+  part.source = "dimensions of this library, head like ISO 4762";
+  part.dimensions = {{"length", length_mm},
+                     {"shank_length", shank_mm},
+                     {"head_diameter", size.socket.head_diameter_mm},
+                     {"head_height", size.socket.head_height_mm},
+                     {"key", size.socket.key_size_mm}};
+  std::vector<Eigen::Vector2d> outline{{0.0, -length_mm},
+                                       {radius_mm - chamfer_mm, -length_mm},
+                                       {radius_mm, -length_mm + chamfer_mm},
+                                       {radius_mm, thread_z_mm},
+                                       {kSpigotReliefDiameter_mm / 2.0, thread_z_mm},
+                                       {kSpigotReliefDiameter_mm / 2.0, -shank_mm},
+                                       {kShank_mm / 2.0, -shank_mm},
+                                       {kShank_mm / 2.0, 0.0}};
+  add_head(outline, size.socket);
+  part.solid = with_socket(turned(outline), size.socket);
+  part.features = {fitted(shaft("shank", {0.0, 0.0, 0.0}, kDown, kShank_mm, shank_mm), "g6"),
+                   threaded(shaft("thread", {0.0, 0.0, thread_z_mm}, kDown, size.thread.diameter_mm,
+                                  kFitScrewThread_mm - chamfer_mm),
+                            thread),
+                   face("seat", {0.0, 0.0, 0.0}, kDown)};
+  part.colour = kFitScrewColour;
+  return part;
+}
+
+/// Solid of revolution that takes the corners off a hexagon end at 30 degrees.
+std::vector<Eigen::Vector2d> chamfered_end(double across_flats_mm, double height_mm, bool below) {
+  const double corner_mm = across_flats_mm / std::numbers::sqrt3 + 1.0;
+  const double face_mm = 0.475 * across_flats_mm;
+  const double drop_mm = (corner_mm - face_mm) * std::tan(std::numbers::pi / 6.0);
+  if (below) return {{0.0, 0.0}, {face_mm, 0.0}, {corner_mm, drop_mm}};
+  return {{corner_mm, height_mm - drop_mm}, {face_mm, height_mm}, {0.0, height_mm}};
+}
+
+Part hexagon_nut(const FastenerSize& size, bool high) {
+  Part part;
+  const std::string thread(size.thread.name);
+  const double width_mm = size.nut.width_mm;
+  const double height_mm = high ? size.nut.high_height_mm : size.nut.height_mm;
+  part.name = element_name((high ? "clamp-nut-" : "nut-") + thread);
+  part.role = "fastener";
+  part.description = (high ? "hexagon nut 1.5 d high " : "hexagon nut ") + thread;
+  part.source = high ? "like DIN 6330, flat ends" : "like ISO 4032";
+  part.dimensions = {{"height", height_mm}, {"width_across_flats", width_mm}};
+  std::vector<Eigen::Vector2d> outline = chamfered_end(width_mm, height_mm, true);
+  const std::vector<Eigen::Vector2d> upper = chamfered_end(width_mm, height_mm, false);
+  outline.insert(outline.end(), upper.begin(), upper.end());
+  part.features = {threaded(
+      plain_hole({"thread", {0.0, 0.0, height_mm}}, size.thread.minor_diameter_mm, height_mm, true),
+      thread)};
+  part.solid = drilled(common(hexagon(width_mm, 0.0, height_mm), turned(outline)), part.features);
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
+  part.colour = kSteelColour;
+  return part;
+}
+
+Part washer(const FastenerSize& size, bool heavy) {
+  Part part;
+  const double inner_mm = heavy ? size.washer.heavy_inner_mm : size.washer.inner_mm;
+  const double outer_mm = heavy ? size.washer.heavy_outer_mm : size.washer.outer_mm;
+  const double height_mm = heavy ? size.washer.heavy_height_mm : size.washer.height_mm;
+  const std::string thread(size.thread.name);
+  part.name = element_name((heavy ? "clamp-washer-" : "washer-") + thread);
+  part.role = "fastener";
+  part.description = (heavy ? "heavy washer for clamping " : "plain washer ") + thread;
+  part.source = heavy ? "like DIN 6340" : "like ISO 7089";
+  part.dimensions = {
+      {"inner_diameter", inner_mm}, {"outer_diameter", outer_mm}, {"height", height_mm}};
+  part.features = {plain_hole({"hole", {0.0, 0.0, height_mm}}, inner_mm, height_mm, true)};
+  part.solid = turned({{inner_mm / 2.0, 0.0},
+                       {outer_mm / 2.0, 0.0},
+                       {outer_mm / 2.0, height_mm},
+                       {inner_mm / 2.0, height_mm}});
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
+  part.colour = kSteelColour;
+  return part;
+}
+
+Part dowel_pin(const DowelPinSize& size) {
+  Part part;
+  const double radius_mm = size.diameter_mm / 2.0;
+  const double drop_mm = size.chamfer_mm * std::tan(kPinLeadIn_deg / 180.0 * std::numbers::pi);
+  part.name = element_name("dowel-pin-" + plain(size.diameter_mm) + "x" + plain(size.length_mm));
+  part.role = "fastener";
+  part.description = "hardened parallel pin, chamfered at both ends";
+  part.source = "like ISO 8734";
+  part.dimensions = {{"diameter", size.diameter_mm}, {"length", size.length_mm}};
+  part.solid = turned({{0.0, 0.0},
+                       {radius_mm - drop_mm, 0.0},
+                       {radius_mm, size.chamfer_mm},
+                       {radius_mm, size.length_mm - size.chamfer_mm},
+                       {radius_mm - drop_mm, size.length_mm},
+                       {0.0, size.length_mm}});
+  part.features = {fitted(shaft("pin", {0.0, 0.0, size.chamfer_mm}, kUp, size.diameter_mm,
+                                size.length_mm - 2.0 * size.chamfer_mm),
+                          "m6"),
+                   face("bottom", {0.0, 0.0, 0.0}, kDown),
+                   face("top", {0.0, 0.0, size.length_mm}, kUp)};
+  part.colour = kSteelColour;
+  return part;
+}
+
+}  // namespace
+
+std::vector<Part> socket_screws() {
+  std::vector<Part> parts;
+  for (const ScrewLengths& screws : kScrews) {
+    for (const int length : screws.lengths_mm) {
+      if (length > 0) parts.push_back(socket_screw(fastener_size(screws.thread), length));
+    }
+  }
+  return parts;
+}
+
+std::vector<Part> fit_screws() {
+  std::vector<Part> parts;
+  for (const int length : kFitScrewLengths_mm) parts.push_back(fit_screw(length));
+  return parts;
+}
+
+std::vector<Part> nuts() {
+  std::vector<Part> parts;
+  for (const bool high : {false, true}) {
+    for (const FastenerSize& size : kFasteners) parts.push_back(hexagon_nut(size, high));
+  }
+  return parts;
+}
+
+std::vector<Part> washers() {
+  std::vector<Part> parts;
+  for (const bool heavy : {false, true}) {
+    for (const FastenerSize& size : kFasteners) parts.push_back(washer(size, heavy));
+  }
+  return parts;
+}
+
+std::vector<Part> dowel_pins() {
+  std::vector<Part> parts;
+  for (const DowelPinSize& size : kDowelPins) parts.push_back(dowel_pin(size));
+  return parts;
+}
+
+}  // namespace dowel::library

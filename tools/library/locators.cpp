@@ -1,0 +1,235 @@
+// What locates the workpiece: edge locators, pins and their holders, V-blocks.
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "builders.h"
+#include "dimensions.h"
+#include "holes.h"
+#include "solids.h"
+#include "spigot.h"
+
+namespace dowel::library {
+namespace {
+
+const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
+const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
+constexpr std::array<double, 3> kLocatorColour{0.20, 0.42, 0.66};
+constexpr std::array<double, 3> kPinColour{0.75, 0.66, 0.30};
+constexpr const char* kSystemSource = "hole system 40 mm, M12/12H7: dimensions of this library";
+
+std::string element_name(const std::string& name) {
+  return std::string(kSystem) + "/" + name;
+}
+
+Part edge_locator(int height) {
+  Part part;
+  const double height_mm = height;
+  const double face_x_mm = kPitch_mm;       // half a pitch in front of the front hole
+  const double width_mm = kPitch_mm - 0.5;  // neighbours on the next row do not touch
+  const double contact_height_mm = 25.0;
+  const double relief_mm = 1.0;
+  part.name = element_name("edge-locator-" + std::to_string(height));
+  part.role = "locator";
+  part.description = "edge locator for two fit screws; its face stands half a pitch from a node";
+  part.source = kSystemSource;
+  part.dimensions = {{"length", 2.0 * kPitch_mm},
+                     {"width", width_mm},
+                     {"height", height_mm},
+                     {"contact_height", contact_height_mm}};
+  const double counterbore_mm = fastener_size(kSystemThread).thread.counterbore_depth_mm;
+  part.features = {
+      screw_hole({"front", {kPitch_mm / 2.0, 0.0, height_mm}}, height_mm, counterbore_mm, true),
+      screw_hole({"rear", {-kPitch_mm / 2.0, 0.0, height_mm}}, height_mm, counterbore_mm, true)};
+  const double contact_z_mm = height_mm - contact_height_mm;
+  const TopoDS_Shape body = prism_y({{-kPitch_mm, 0.0},
+                                     {-kPitch_mm, height_mm},
+                                     {face_x_mm, height_mm},
+                                     {face_x_mm, contact_z_mm},
+                                     {face_x_mm - relief_mm, contact_z_mm},
+                                     {face_x_mm - relief_mm, 0.0}},
+                                    width_mm);
+  part.solid = drilled(body, part.features);
+  part.features.push_back(
+      face("locate", {face_x_mm, 0.0, contact_z_mm + contact_height_mm / 2.0}, {1.0, 0.0, 0.0}));
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.colour = kLocatorColour;
+  return part;
+}
+
+/// Cross-section that leaves two lands of a diamond pin: its lands face +-y, so that it gives way
+/// along x.
+TopoDS_Shape diamond_envelope(const PinSize& size) {
+  const double radius_mm = size.diameter_mm / 2.0;
+  const double land_mm = size.land_mm / 2.0;
+  const double half_width_mm = 0.35 * size.diameter_mm;
+  const double land_y_mm = std::sqrt(radius_mm * radius_mm - land_mm * land_mm);
+  const double side_y_mm = land_y_mm - (half_width_mm - land_mm);  // flanks at 45 degrees
+  const double out_mm = size.diameter_mm;
+  return prism_z({{half_width_mm, -side_y_mm},
+                  {half_width_mm, side_y_mm},
+                  {land_mm, land_y_mm},
+                  {land_mm, out_mm},
+                  {-land_mm, out_mm},
+                  {-land_mm, land_y_mm},
+                  {-half_width_mm, side_y_mm},
+                  {-half_width_mm, -side_y_mm},
+                  {-land_mm, -land_y_mm},
+                  {-land_mm, -out_mm},
+                  {land_mm, -out_mm},
+                  {land_mm, -land_y_mm}},
+                 0.0, size.head_length_mm);
+}
+
+Part locating_pin(const PinSize& size, bool diamond) {
+  Part part;
+  const double head_mm = size.fit_diameter_mm / 2.0;
+  const double shank_mm = size.shank_diameter_mm / 2.0;
+  const double chamfer_mm = 0.5;
+  const double lead_mm = size.head_length_mm * kPinLeadInShare;
+  const double lead_drop_mm = lead_mm * std::tan(kPinLeadIn_deg / 180.0 * std::numbers::pi);
+  part.name = element_name((diamond ? "pin-diamond-" : "pin-round-") + plain(size.diameter_mm));
+  part.role = "locator";
+  part.description = diamond ? "flattened locating pin, gives way along x, to press into a holder"
+                             : "round locating pin, to press into a holder";
+  part.source = diamond ? "like DIN 6321 form C" : "like DIN 6321 form B";
+  part.dimensions = {{"diameter", size.diameter_mm},
+                     {"head_length", size.head_length_mm},
+                     {"shank_diameter", size.shank_diameter_mm},
+                     {"shank_length", size.shank_length_mm}};
+  if (diamond) part.dimensions.push_back({"land", size.land_mm});
+  const std::vector<Eigen::Vector2d> shank{{0.0, -size.shank_length_mm},
+                                           {shank_mm - chamfer_mm, -size.shank_length_mm},
+                                           {shank_mm, -size.shank_length_mm + chamfer_mm},
+                                           {shank_mm, 0.0}};
+  const std::vector<Eigen::Vector2d> head{{head_mm, 0.0},
+                                          {head_mm, size.head_length_mm - lead_mm},
+                                          {head_mm - lead_drop_mm, size.head_length_mm},
+                                          {0.0, size.head_length_mm}};
+  std::vector<Eigen::Vector2d> outline = shank;
+  if (diamond) {
+    std::vector<Eigen::Vector2d> upper{{0.0, 0.0}};
+    upper.insert(upper.end(), head.begin(), head.end());
+    outline.emplace_back(0.0, 0.0);
+    part.solid = fuse(common(turned(upper), diamond_envelope(size)), turned(outline));
+  } else {
+    outline.insert(outline.end(), head.begin(), head.end());
+    part.solid = turned(outline);
+    part.features.push_back(fitted(
+        shaft("head", {0.0, 0.0, 0.0}, kUp, size.fit_diameter_mm, size.head_length_mm - lead_mm),
+        "g6"));
+  }
+  part.features.push_back(fitted(shaft("shank", {0.0, 0.0, 0.0}, kDown, size.shank_diameter_mm,
+                                       size.shank_length_mm - chamfer_mm),
+                                 "n6"));
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.colour = kPinColour;
+  return part;
+}
+
+Part pin_holder(const PinHolderSize& size) {
+  Part part;
+  const double radius_mm = 15.0;
+  const double height_mm = 20.0;
+  const double chamfer_mm = 1.0;
+  part.name = element_name("pin-holder-" + plain(size.bore_mm));
+  part.role = "locator";
+  part.description = "screw-in holder for a locating pin with a shank of " + plain(size.bore_mm) +
+                     " mm, wrench 24";
+  part.source = kSystemSource;
+  part.dimensions = {{"diameter", 2.0 * radius_mm}, {"height", height_mm}, {"bore", size.bore_mm}};
+  std::vector<Eigen::Vector2d> outline = spigot_outline();
+  outline.insert(outline.end(), {{radius_mm, 0.0},
+                                 {radius_mm, height_mm - chamfer_mm},
+                                 {radius_mm - chamfer_mm, height_mm},
+                                 {0.0, height_mm}});
+  part.features = spigot_features();
+  part.features.push_back(fitted(
+      plain_hole({"bore", {0.0, 0.0, height_mm}}, size.bore_mm, size.depth_mm, false), "H7"));
+  const double flat_mm = 12.0;
+  const double out_mm = radius_mm + 1.0;
+  part.solid = cut(drilled(turned(outline), part.features),
+                   {box({-out_mm, flat_mm, 3.0}, {out_mm, out_mm, 11.0}),
+                    box({-out_mm, -out_mm, 3.0}, {out_mm, -flat_mm, 11.0})});
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
+  part.colour = kLocatorColour;
+  return part;
+}
+
+Part vee_block(const VeeBlockSize& size) {
+  Part part;
+  const double half_mm = size.width_mm / 2.0;
+  const double opening_mm = 0.8 * half_mm;  // half of it
+  const double half_angle_rad = size.angle_deg / 360.0 * std::numbers::pi;
+  const double apex_z_mm = size.height_mm - opening_mm / std::tan(half_angle_rad);
+  part.name = element_name("vee-block-" + plain(size.width_mm) + "-" + plain(size.angle_deg));
+  part.role = "locator";
+  part.description = "V-block of " + plain(size.angle_deg) +
+                     " degrees along y, held by fit screws through the bottom of the V";
+  part.source = kSystemSource;
+  part.dimensions = {{"length", size.width_mm},
+                     {"width", size.width_mm},
+                     {"height", size.height_mm},
+                     {"opening", 2.0 * opening_mm},
+                     {"apex_height", apex_z_mm}};
+  const double counterbore_mm = size.height_mm - size.screw_seat_mm;
+  if (size.width_mm < 2.0 * kPitch_mm) {
+    part.features = {
+        screw_hole({"screw", {0.0, 0.0, size.height_mm}}, size.height_mm, counterbore_mm, true)};
+  } else {
+    for (const double y_mm : {-kPitch_mm / 2.0, kPitch_mm / 2.0}) {
+      part.features.push_back(
+          screw_hole({y_mm < 0.0 ? "screw1" : "screw2", {0.0, y_mm, size.height_mm}},
+                     size.height_mm, counterbore_mm, true));
+    }
+  }
+  const TopoDS_Shape body = prism_y({{-half_mm, 0.0},
+                                     {-half_mm, size.height_mm},
+                                     {-opening_mm, size.height_mm},
+                                     {0.0, apex_z_mm},
+                                     {opening_mm, size.height_mm},
+                                     {half_mm, size.height_mm},
+                                     {half_mm, 0.0}},
+                                    size.width_mm);
+  part.solid = drilled(body, part.features);
+  const double flank_z_mm = (apex_z_mm + size.height_mm) / 2.0;
+  const Eigen::Vector3d right(-std::cos(half_angle_rad), 0.0, std::sin(half_angle_rad));
+  const Eigen::Vector3d left(std::cos(half_angle_rad), 0.0, std::sin(half_angle_rad));
+  part.features.push_back(face("vee-right", {opening_mm / 2.0, 0.0, flank_z_mm}, right));
+  part.features.push_back(face("vee-left", {-opening_mm / 2.0, 0.0, flank_z_mm}, left));
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.colour = kLocatorColour;
+  return part;
+}
+
+}  // namespace
+
+std::vector<Part> edge_locators() {
+  std::vector<Part> parts;
+  for (const int height : kEdgeLocatorHeights_mm) parts.push_back(edge_locator(height));
+  return parts;
+}
+
+std::vector<Part> locating_pins() {
+  std::vector<Part> parts;
+  for (const bool diamond : {false, true}) {
+    for (const PinSize& size : kPins) parts.push_back(locating_pin(size, diamond));
+  }
+  return parts;
+}
+
+std::vector<Part> pin_holders() {
+  std::vector<Part> parts;
+  for (const PinHolderSize& size : kPinHolders) parts.push_back(pin_holder(size));
+  return parts;
+}
+
+std::vector<Part> vee_blocks() {
+  std::vector<Part> parts;
+  for (const VeeBlockSize& size : kVeeBlocks) parts.push_back(vee_block(size));
+  return parts;
+}
+
+}  // namespace dowel::library
