@@ -17,6 +17,10 @@ inline constexpr double kParallel_rad = 1.0e-7;
 /// that is 0.1 um, what kCoincident_mm forgives.
 inline constexpr double kUnitVectorSlack = 1.0e-9;
 
+/// Boxes whose volumes differ by less than this part are equally large, and the better aligned one is
+/// taken: well over the rounding of a volume, well under what anybody would call smaller.
+inline constexpr double kEqualVolumes = 1.0e-9;
+
 /// A quaternion read from outside may miss unit length by this much (FORMATS: scene files).
 inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 
