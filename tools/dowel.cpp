@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
                  "dowel");
     app.set_version_flag("--version", "dowel " DOWEL_VERSION);
     app.require_subcommand(0, 1);
+    tools::add_library_command(app, exit_code);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

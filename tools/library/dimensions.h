@@ -162,7 +162,7 @@ inline constexpr std::array<StrapSize, 2> kStraps{
     {{14.0, 40.0, 100.0, 40.0, 20.0}, {14.0, 64.0, 160.0, 40.0, 25.0}}};
 
 /// Heel screws M12: hexagon head with a flat face, thread to the end.
-inline constexpr std::array<int, 3> kHeelScrewLengths_mm{35, 45, 60};
+inline constexpr std::array<int, 4> kHeelScrewLengths_mm{45, 50, 60, 70};
 inline constexpr double kHeelScrewHead_mm = 10.0;
 inline constexpr double kHeelScrewWidth_mm = 18.0;
 
