@@ -96,8 +96,11 @@ std::string tidy_step_text(std::string_view text) {
     }
     if (c == '\'') in_string = !in_string;
     const bool line_break = c == '\n' || c == '\r';
+    // Two strings never follow each other: a break between two apostrophes splits a doubled one.
+    const bool splits_pair = line_break && !out.empty() && out.back() == '\'' &&
+                             i + 1 < text.size() && text[i + 1] == '\'';
     if (!line_break && c != ' ') before = c;
-    if (!in_string || !line_break) out += c;
+    if (!line_break || !(in_string || splits_pair)) out += c;
     ++i;
   }
   return out;

@@ -1,5 +1,6 @@
 #include "dowel/io/step_writer.h"
 
+#include <functional>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -7,15 +8,10 @@
 
 #include <APIHeaderSection_MakeHeader.hxx>
 #include <BinTools.hxx>
-#include <IFSelect_ReturnStatus.hxx>
 #include <Interface_Static.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
-#include <Message_PrinterOStream.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Controller.hxx>
-#include <Standard_Failure.hxx>
 #include <StepData_Protocol.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepData_StepWriter.hxx>
@@ -38,15 +34,15 @@
 #include "dowel/io/file.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
+#include "occt.h"
 #include "step_text.h"
+#include "worker.h"
 
 namespace dowel {
 namespace {
 
 /// Everything about the STEP writer that is global to the process and shows in the file.
 void configure_writer() {
-  // The default printer writes to standard output, which belongs to results.
-  Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   STEPControl_Controller::Init();
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
   Interface_Static::SetCVal("write.step.unit", "MM");
@@ -61,16 +57,10 @@ TopoDS_Shape read_brep(const ExportPart& part) {
   const std::string bytes(reinterpret_cast<const char*>(part.brep.data()), part.brep.size());
   std::istringstream stream(bytes);
   TopoDS_Shape shape;
-  try {
-    BinTools::Read(shape, stream);
-  } catch (const Standard_Failure&) {
-    shape.Nullify();
-  } catch (const std::exception&) {  // a length that no allocation can meet
-    shape.Nullify();
-  }
+  BinTools::Read(shape, stream);
   if (shape.IsNull()) {
     throw Error(ErrorCode::FileMalformed,
-                "part '" + part.name + "': its boundary representation is damaged");
+                "the boundary representation of part '" + part.name + "' is damaged");
   }
   return shape;
 }
@@ -130,7 +120,7 @@ class StepDocument {
     shapes_->UpdateAssemblies();
     STEPCAFControl_Writer writer;
     if (!writer.Transfer(document_, STEPControl_AsIs)) {
-      throw Error(ErrorCode::InvalidInput, "'" + name + "': cannot be expressed as STEP");
+      throw Error(ErrorCode::InvalidInput, "cannot be expressed as STEP");
     }
     const Handle(StepData_StepModel) model = writer.ChangeWriter().Model();
     set_header(model, name);
@@ -182,15 +172,23 @@ class StepDocument {
   Handle(XCAFDoc_ColorTool) colours_;
 };
 
-/// Runs `write`; a failure inside OpenCascade becomes an Error that names `name`.
-template <typename Write>
-std::string guarded(const std::string& name, const Write& write) {
-  try {
-    return write();
-  } catch (const Standard_Failure& failure) {
-    throw Error(ErrorCode::FileMalformed,
-                "'" + name + "': its geometry cannot be written: " + failure.GetMessageString());
-  }
+/// What `write` returns, from a child process: reading a damaged brep can crash, and both the brep
+/// reader and the STEP writer leave state and words behind. `name` is what errors tell of.
+std::string write_in_child(const std::string& name, const std::function<std::string()>& write) {
+  std::string content;
+  const auto task = [&](std::size_t, const std::function<void(WorkerStage)>&) {
+    const std::string text = guarded("its geometry cannot be written", write);
+    const auto* first = reinterpret_cast<const std::byte*>(text.data());
+    return std::vector<std::byte>(first, first + text.size());
+  };
+  run_workers(1, 1, {}, task, [&](std::size_t, WorkerOutcome&& outcome) {
+    if (!outcome.failure.empty()) {
+      throw Error(ErrorCode::FileMalformed, "'" + name + "': " + outcome.failure);
+    }
+    content.assign(reinterpret_cast<const char*>(outcome.output.data()), outcome.output.size());
+    return true;
+  });
+  return content;
 }
 
 }  // namespace
@@ -202,7 +200,7 @@ void write_step_assembly(const std::filesystem::path& file, const std::string& n
   if (instances.empty()) {
     throw Error(ErrorCode::InvalidInput, "'" + name + "': has no instance to export");
   }
-  const std::string content = guarded(name, [&] {
+  const std::string content = write_in_child(name, [&] {
     configure_writer();
     StepDocument document;
     const TDF_Label assembly = document.add_assembly(name);
@@ -219,7 +217,7 @@ void write_step_assembly(const std::filesystem::path& file, const std::string& n
 }
 
 void write_step_part(const std::filesystem::path& file, const ExportPart& part) {
-  const std::string content = guarded(part.name, [&] {
+  const std::string content = write_in_child(part.name, [&] {
     configure_writer();
     StepDocument document;
     document.add_part(part);

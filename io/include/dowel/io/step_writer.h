@@ -25,10 +25,10 @@ struct ExportInstance {
 
 /// Writes an AP214 STEP assembly in millimetres: each part once, instances as placed components
 /// with names and colours. Parts without an instance are left out. Deterministic bytes: no clock,
-/// no host name. The file appears whole or not at all. OpenCascade's STEP writer keeps global
-/// state: one call at a time in a process.
+/// no host name. The file appears whole or not at all. The work is done in a forked child, as a
+/// damaged brep can crash its reader.
 ///
-/// Expects: every instance names an existing part.
+/// Expects: every instance names an existing part; no other thread of the process is running.
 /// Throws: Error{InvalidInput} where there is no instance, Error{FileMalformed} where a brep is
 /// damaged, Error{FileUnwritable}.
 void write_step_assembly(const std::filesystem::path& file, const std::string& name,
