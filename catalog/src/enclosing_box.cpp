@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <variant>
 
 #include "axis.h"
@@ -8,6 +11,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/minimum_box.h"
 #include "face_graph.h"
+#include "facet_geometry.h"
 
 namespace dowel {
 namespace {
@@ -119,26 +123,81 @@ double reach_mm(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
   return reach;
 }
 
+/// Box along `axes` around the exact solid.
+Obb exact_box(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
+              const Eigen::Matrix3d& axes) {
+  Obb box;
+  box.axes = axes;
+  Eigen::Vector3d center;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double high = reach_mm(solid, graph, axes.col(i));
+    const double low = -reach_mm(solid, graph, -axes.col(i));
+    center[i] = 0.5 * (low + high);
+    box.half_extents_mm[i] = 0.5 * (high - low);
+  }
+  box.center = axes * center;
+  return box;
+}
+
+/// The frame of the same axes that is closest to the identity.
+Eigen::Matrix3d nearest_identity(const Eigen::Matrix3d& axes) {
+  Eigen::Matrix3d best = axes;
+  std::array<Eigen::Index, 3> order{0, 1, 2};
+  do {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      Eigen::Matrix3d frame;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const double sign = ((signs >> static_cast<unsigned>(i)) & 1U) != 0 ? -1.0 : 1.0;
+        frame.col(i) = sign * axes.col(order[static_cast<std::size_t>(i)]);
+      }
+      if (frame.determinant() > 0.0 && frame.trace() > best.trace() + kUnitVectorSlack) {
+        best = frame;
+      }
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
+/// Frame of the largest planar face and the largest one square to it.
+std::optional<Eigen::Matrix3d> planar_frame(const std::vector<FaceNode>& graph) {
+  std::vector<std::pair<double, Eigen::Vector3d>> planes;
+  for (const FaceNode& node : graph) {
+    if (const auto* plane = std::get_if<PlaneSurface>(&node.surface)) {
+      planes.emplace_back(node.area_mm2, plane->normal);
+    }
+  }
+  std::sort(planes.begin(), planes.end(), [](const auto& a, const auto& b) {
+    if (a.first != b.first) return a.first > b.first;
+    return less_by_coordinates(a.second, b.second);
+  });
+  for (std::size_t i = 1; i < planes.size(); ++i) {
+    const Eigen::Vector3d& first = planes.front().second;
+    const Eigen::Vector3d& second = planes[i].second;
+    if (std::abs(first.dot(second)) > kCoaxial_rad) continue;
+    Eigen::Matrix3d frame;
+    frame.col(0) = first;
+    frame.col(2) = first.cross(second).normalized();
+    frame.col(1) = frame.col(2).cross(first);
+    return nearest_identity(frame);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Obb enclosing_box(const FacetedSolid& solid) {
   DOWEL_EXPECTS(!solid.vertices.empty());
   const std::vector<FaceNode> graph = face_graph(solid);
-  const Obb inner = minimum_box(solid.vertices);
-  Obb box = inner;
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Vector3d axis = inner.axes.col(i);
-    const double middle = axis.dot(inner.center);
-    const double half = inner.half_extents_mm[i];
-    // Never smaller than the box found, whose own rounding is its maker's business.
-    const double high = std::max(half, reach_mm(solid, graph, axis) - middle);
-    const double low = std::max(half, reach_mm(solid, graph, -axis) + middle);
-    box.half_extents_mm[i] = 0.5 * (high + low);
-    shift[i] = 0.5 * (high - low);
+  const Obb facets = minimum_box(solid.vertices);
+  Obb best = exact_box(solid, graph, facets.axes);
+  // Never smaller than the box found, whose own rounding is its maker's business.
+  best.half_extents_mm = best.half_extents_mm.cwiseMax(facets.half_extents_mm);
+  // The facets' box may stand askew by what they leave out of a rounded corner.
+  if (const std::optional<Eigen::Matrix3d> frame = planar_frame(graph)) {
+    const Obb square = exact_box(solid, graph, *frame);
+    if (square.volume_mm3() < best.volume_mm3() * (1.0 - kBoxSlackRatio)) best = square;
   }
-  box.center = inner.center + inner.axes * shift;
-  return box;
+  return best;
 }
 
 }  // namespace dowel

@@ -37,7 +37,7 @@ std::string hole_prefix(const Feature& hole) {
       [](const HoleSegment& segment) { return segment.type == HoleSegment::Type::Cylinder; });
   if (first_cylinder->diameter_mm > hole.diameter_mm + kSameFeature_mm) return "cb";
   if (mouth.type == HoleSegment::Type::Cone &&
-      mouth.diameter_mm >= kCountersinkRatio * hole.diameter_mm) {
+      mouth.diameter_mm >= kCountersinkRatio * hole.diameter_mm - kSameFeature_mm) {
     return "cs";
   }
   return hole.through ? "h" : "b";

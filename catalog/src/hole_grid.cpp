@@ -26,6 +26,10 @@ constexpr double kFewestFilled = 0.45;
 /// Pitches tried along each direction, the most frequent gaps first.
 constexpr std::size_t kMaxPitches = 8;
 
+/// A plane lies where its normal rises more than this: just over the sine of 45 degrees, so that a
+/// bevel of 45 degrees stands whatever its rounding.
+constexpr double kLying = 0.71;
+
 struct Spot {
   std::size_t hole = 0;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
@@ -275,12 +279,9 @@ std::vector<std::vector<std::size_t>> equal_holes(const std::vector<Feature>& ho
 }  // namespace
 
 ViewFrame view_frame(const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d side = Eigen::Vector3d::UnitZ().cross(normal);
-  if (side.norm() > kCoaxial_rad) {
-    const Eigen::Vector3d right = side.normalized();
-    return {right, normal.cross(right)};
-  }
-  const Eigen::Vector3d right = Eigen::Vector3d::UnitY().cross(normal).normalized();
+  const Eigen::Vector3d up =
+      std::abs(normal.z()) > kLying ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d right = up.cross(normal).normalized();
   return {right, normal.cross(right)};
 }
 

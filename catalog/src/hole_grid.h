@@ -9,8 +9,9 @@
 
 namespace dowel {
 
-/// Right and up as seen by someone who looks against `normal` at the plane: up is +z, or +y on a
-/// plane that faces up or down. Right, up and `normal` are right-handed.
+/// Right and up as seen by someone who looks against `normal` at the plane: up is +y on a plane that
+/// lies (closer to level than 45 degrees), +z on one that stands. Right, up and `normal` are
+/// right-handed.
 struct ViewFrame {
   Eigen::Vector3d right = Eigen::Vector3d::UnitX();
   Eigen::Vector3d up = Eigen::Vector3d::UnitY();

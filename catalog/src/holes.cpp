@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "core_line.h"
 
@@ -16,6 +17,10 @@ constexpr double kCoreOffset = 0.1;
 /// A piece of a bore ends in a crossing hole where walls of other holes take up this much of its
 /// rim.
 constexpr double kMostOfRim = 0.5;
+
+/// A boss inside a bore makes it a groove where it takes up this part of its length; not a simple
+/// fraction, so that none decides by rounding.
+constexpr double kHubShare = 0.55;
 
 /// A plane is an entry where it faces the opening at less than about 84 degrees.
 constexpr double kFacesOpening = 0.1;
@@ -31,7 +36,7 @@ class Bore {
       : solid_(solid), graph_(graph), axis_(about.axis) {
     double narrowest_mm = std::numeric_limits<double>::infinity();
     for (const Band& band : about.bands) {
-      if (!band.is_inner) continue;
+      if (!band.is_inner || surrounds_a_hub(band, about.bands)) continue;
       bands_.push_back(&band);
       if (band.is_cylinder) narrowest_mm = std::min(narrowest_mm, band.radius_mm[0]);
     }
@@ -58,6 +63,18 @@ class Bore {
 
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  /// A groove around a boss: no shaft goes in there.
+  static bool surrounds_a_hub(const Band& band, const std::vector<Band>& bands) {
+    const double low = band.ends[0].rim_mm;
+    const double high = band.ends[1].rim_mm;
+    return std::any_of(bands.begin(), bands.end(), [&](const Band& hub) {
+      const double shared = std::min(high, hub.ends[1].rim_mm) - std::max(low, hub.ends[0].rim_mm);
+      return !hub.is_inner && shared > kHubShare * (high - low) &&
+             std::max(hub.radius_mm[0], hub.radius_mm[1]) <
+                 std::min(band.radius_mm[0], band.radius_mm[1]);
+    });
+  }
 
   /// The void stretch that the band's inside is part of: half of its length at least.
   std::size_t stretch_of(const Band& band) const {
@@ -136,9 +153,26 @@ class Bore {
     });
   }
 
+  /// The void ends, or a floor surrounds whatever opens in its middle.
   bool is_closed(const BandEnd& end, std::size_t stretch, bool is_high) const {
+    if (!end.beyond.empty() && end.lean < 0.0 && is_ring(end.beyond.front(), end.height_mm)) {
+      const auto& plane = std::get<PlaneSurface>(graph_[end.beyond.front()].surface);
+      if ((plane.normal.dot(axis_.direction) < 0.0) == is_high) return true;
+    }
     return is_high ? void_[stretch].high_mm <= end.reach_mm + kSameFeature_mm
                    : void_[stretch].low_mm >= end.reach_mm - kSameFeature_mm;
+  }
+
+  /// A tip may pierce what lies below by less than a shaft needs; only a floor makes an end flat.
+  std::string blind_end(const BandEnd& bottom, const HoleSegment& last, bool is_high) const {
+    if (bottom.is_ball) return "round";
+    const double sign = is_high ? -1.0 : 1.0;
+    const bool has_floor =
+        std::any_of(bottom.beyond.begin(), bottom.beyond.end(), [&](std::uint32_t face) {
+          const auto* plane = std::get_if<PlaneSurface>(&graph_[face].surface);
+          return plane != nullptr && sign * plane->normal.dot(axis_.direction) > kFacesOpening;
+        });
+    return last.type == HoleSegment::Type::Cone && !has_floor ? "cone" : "flat";
   }
 
   std::optional<std::uint32_t> entry_face(const BandEnd& end, bool is_high) const {
@@ -173,6 +207,9 @@ class Bore {
     const bool low_closed = is_closed(lowest.ends[0], stretch_[chain.front()], false);
     const bool high_closed = is_closed(highest.ends[1], stretch_[chain.back()], true);
     if (!has_cylinder || (low_closed && high_closed)) return std::nullopt;
+    if (highest.ends[1].height_mm - lowest.ends[0].height_mm <= kSameFeature_mm) {
+      return std::nullopt;
+    }
 
     const bool is_through = !low_closed && !high_closed;
     const bool opens_up = is_through ? opens_high(lowest, highest) : low_closed;
@@ -191,11 +228,7 @@ class Bore {
       if (segment.type != HoleSegment::Type::Cylinder) continue;
       feature.diameter_mm = std::min(feature.diameter_mm, segment.diameter_mm);
     }
-    if (!is_through) {
-      feature.blind_end = bottom.is_ball                                   ? "round"
-                          : feature.segments.back().diameter_end_mm == 0.0 ? "cone"
-                                                                           : "flat";
-    }
+    if (!is_through) feature.blind_end = blind_end(bottom, feature.segments.back(), !opens_up);
     feature.faces = faces(chain, low_closed, high_closed);
     hole.entry_face = entry_face(mouth, opens_up);
     return hole;

@@ -107,13 +107,48 @@ bool are_coplanar(const FacetedSolid& solid, const FaceNode& a, const FaceNode& 
   });
 }
 
+/// Planar faces across which the surface hardly turns, by face.
+std::vector<std::vector<std::uint32_t>> near_tangent_neighbours(
+    const std::vector<FaceNode>& graph) {
+  const double least_cosine = std::cos(kCrease_rad);
+  std::vector<std::vector<std::uint32_t>> result(graph.size());
+  for (std::size_t face = 0; face < graph.size(); ++face) {
+    for (const std::uint32_t next : graph[face].neighbours) {
+      if (plane_of(graph[face]).normal.dot(plane_of(graph[next]).normal) > least_cosine) {
+        result[face].push_back(next);
+      }
+    }
+  }
+  return result;
+}
+
+/// Faces that are no faces of their own but the facets of a curved one: a mesh file has only
+/// planes, and the facets of a bore or a ball come in chains that turn little from one to the next.
+/// A shallow chamfer ends at its face and so is none.
+std::vector<bool> facets_of_curves(const std::vector<FaceNode>& graph) {
+  std::vector<bool> result(graph.size(), false);
+  const bool is_polyhedron = std::all_of(
+      graph.begin(), graph.end(), [](const FaceNode& node) { return is_plane(node.surface); });
+  if (!is_polyhedron) return result;
+  const std::vector<std::vector<std::uint32_t>> next = near_tangent_neighbours(graph);
+  for (std::size_t face = 0; face < graph.size(); ++face) {
+    const auto in_chain =
+        std::count_if(next[face].begin(), next[face].end(),
+                      [&](std::uint32_t neighbour) { return next[neighbour].size() >= 2; });
+    result[face] = in_chain >= 2;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Feature> find_planar_faces(const FacetedSolid& solid,
                                        const std::vector<FaceNode>& graph,
                                        const std::vector<bool>& is_taken) {
+  const std::vector<bool> is_facet = facets_of_curves(graph);
   const auto is_wanted = [&](std::size_t face) {
-    return is_plane(graph[face].surface) && !is_taken[face] && !graph[face].triangles.empty();
+    return is_plane(graph[face].surface) && !is_taken[face] && !is_facet[face] &&
+           !graph[face].triangles.empty();
   };
   DisjointSets sets(graph.size());
   for (std::size_t face = 0; face < graph.size(); ++face) {

@@ -20,7 +20,7 @@ std::vector<Feature> find_shafts(const std::vector<AxisBands>& axes) {
   std::vector<Feature> result;
   for (const AxisBands& about : axes) {
     for (const Band& band : about.bands) {
-      if (band.is_inner || !band.is_cylinder) continue;
+      if (band.is_inner || !band.is_cylinder || band.length_mm() <= kSameFeature_mm) continue;
       const bool low_shoulder = band.ends[0].lean > 0.0;
       const bool high_shoulder = band.ends[1].lean > 0.0;
       const bool is_up =

@@ -114,6 +114,12 @@ double revolved_area_mm2(const FacetedSolid& solid, const std::vector<Feature>& 
   return area_mm2;
 }
 
+/// A plane along the axis that looks towards it.
+bool faces_axis(const Feature& plane, const Axis& axis) {
+  const Eigen::Vector3d out = plane.origin - axis.at(axis.height_mm(plane.origin));
+  return plane.direction.dot(out) < 0.0;
+}
+
 }  // namespace
 
 ShapeClass classify_shape(const FacetedSolid& solid, const std::vector<Feature>& features) {
@@ -145,11 +151,16 @@ ShapeClass classify_shape(const FacetedSolid& solid, const std::vector<Feature>&
   }
   const Axis axis{main_shaft->origin, main_shaft->direction};
   const double revolved_mm2 = revolved_area_mm2(solid, features, is_in_hole, axis);
-  if (revolved_mm2 >= kMostOfArea * outer_area_mm2) return ShapeClass::Cylinder;
   double prismatic_mm2 = 0.0;
   for (const Feature* plane : planes) {
-    if (!axis.is_parallel(plane->direction)) prismatic_mm2 += plane->area_mm2;
+    if (axis.is_parallel(plane->direction)) continue;
+    if (faces_axis(*plane, axis)) {
+      outer_area_mm2 -= plane->area_mm2;  // a socket's flank is no outer face
+    } else {
+      prismatic_mm2 += plane->area_mm2;
+    }
   }
+  if (revolved_mm2 >= kMostOfArea * outer_area_mm2) return ShapeClass::Cylinder;
   return revolved_mm2 + prismatic_mm2 >= kMostOfArea * outer_area_mm2 ? ShapeClass::BlockCylinder
                                                                       : ShapeClass::Compound;
 }

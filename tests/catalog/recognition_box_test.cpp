@@ -119,6 +119,19 @@ TEST_CASE("blocks, cylinders, blocks with cylinders and the rest are told apart"
                                 100.0)) == ShapeClass::Block);
 }
 
+TEST_CASE("a socket does not make a screw's head a block") {
+  // A hexagon of 8 across flats sunk into a cylinder: its flanks look inwards.
+  std::vector<Eigen::Vector2d> hexagon;
+  for (int i = 0; i < 6; ++i) {
+    const double a = std::numbers::pi / 3.0 * i;
+    hexagon.emplace_back(4.6 * std::cos(a), 4.6 * std::sin(a));
+  }
+  const FacetedSolid socket =
+      testing::transformed(Pose::from_translation({0.0, 0.0, 2.0}), testing::prism(hexagon, 8.0));
+  CHECK(shape_of(testing::hollowed(testing::cylinder(6.0, 12.0, 24), socket)) ==
+        ShapeClass::Cylinder);
+}
+
 TEST_CASE("the boss of a block is a shaft that grows out of it") {
   const std::vector<Feature> features = recognise_features(block_with_boss());
   REQUIRE(features.front().name == "pin1");

@@ -240,6 +240,41 @@ TEST_CASE("a groove round a boss is no hole, and the boss is a shaft") {
   check_point(feature(features, "pin1").direction, {0.0, 0.0, 1.0});
 }
 
+TEST_CASE("a pocket around a hub with a bore is no hole, and the bore is one") {
+  const FacetedSolid solid = testing::revolved({{5.0, 0.0},
+                                                {30.0, 0.0},
+                                                {30.0, 20.0},
+                                                {25.0, 20.0},
+                                                {25.0, 4.0},
+                                                {10.0, 4.0},
+                                                {10.0, 20.0},
+                                                {5.0, 20.0}},
+                                               32);
+  const std::vector<Feature> features = recognise_features(solid);
+  REQUIRE(names(features, FeatureKind::Hole) == "h1");
+  CHECK(feature(features, "h1").diameter_mm == 10.0);
+  CHECK(names(features, FeatureKind::Shaft) == "pin1 pin2");
+}
+
+TEST_CASE("a floor closes a bore although something opens in its middle") {
+  // The hub in the pocket is low, and its bore goes through.
+  const FacetedSolid solid = testing::revolved({{5.0, 0.0},
+                                                {30.0, 0.0},
+                                                {30.0, 20.0},
+                                                {25.0, 20.0},
+                                                {25.0, 4.0},
+                                                {10.0, 4.0},
+                                                {10.0, 6.0},
+                                                {5.0, 6.0}},
+                                               32);
+  const std::vector<Feature> features = recognise_features(solid);
+  REQUIRE(names(features, FeatureKind::Hole) == "b1 h1");
+  CHECK(feature(features, "b1").diameter_mm == 50.0);
+  CHECK(feature(features, "b1").depth_mm == 16.0);
+  CHECK(feature(features, "b1").blind_end == "flat");
+  CHECK(feature(features, "h1").depth_mm == 6.0);
+}
+
 TEST_CASE("a closed cavity is no hole") {
   const FacetedSolid cavity = testing::transformed(Pose::from_translation({0.0, 0.0, -5.0}),
                                                    testing::cylinder(5.0, 10.0, 24));
@@ -408,6 +443,20 @@ TEST_CASE("a free-form face that leaves its cylinder between its vertices is non
   REQUIRE(of_kind(recognise_features(barrel), FeatureKind::Shaft).size() == 1);
   barrel.faces[1].facet_error_mm = 0.5;
   CHECK(of_kind(recognise_features(barrel), FeatureKind::Shaft).empty());
+}
+
+TEST_CASE("the facets of curved walls in a mesh file are no faces") {
+  // What a mesh file gives: every coplanar patch a plane of its own.
+  std::vector<Eigen::Vector2d> round;
+  for (int i = 0; i < 16; ++i) {
+    const double a = std::numbers::pi * i / 8.0;
+    round.emplace_back(20.0 * std::cos(a), 20.0 * std::sin(a));
+  }
+  CHECK(names(recognise_features(testing::prism(round, 10.0)), FeatureKind::Face) == "top bottom");
+  // A block with shallow chamfers is not meant.
+  const FacetedSolid chamfered = testing::prism(
+      {{0.0, 0.0}, {60.0, 0.0}, {60.0, 20.0}, {50.0, 25.0}, {10.0, 25.0}, {0.0, 20.0}}, 30.0);
+  CHECK(of_kind(recognise_features(chamfered), FeatureKind::Face).size() == 8);
 }
 
 TEST_CASE("solids without planes, cylinders or faces of their own have no features") {
