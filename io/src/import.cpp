@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 #include <BRepGProp.hxx>
 #include <BinTools.hxx>
@@ -15,6 +16,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/mass_properties.h"
+#include "dowel/kernel/tolerance.h"
 #include "facet.h"
 #include "mesh_reader.h"
 #include "occt.h"
@@ -60,7 +62,16 @@ void set_mass(const TopoDS_Shape& shape, ImportedPart& part) {
     slack_mm3 += face.area_mm2 * face.facet_error_mm;
   }
   GProp_GProps properties;
-  BRepGProp::VolumeProperties(shape, properties);
+  // Adaptive integration only where it matters: the plain one is exact on analytic faces, but may
+  // miss a promille on rational splines.
+  const bool has_splines = std::any_of(
+      part.solid.faces.begin(), part.solid.faces.end(),
+      [](const Face& face) { return std::holds_alternative<OtherSurface>(face.surface); });
+  if (has_splines) {
+    BRepGProp::VolumeProperties(shape, properties, kIntegrationRatio);
+  } else {
+    BRepGProp::VolumeProperties(shape, properties);
+  }
   const double volume_mm3 = properties.Mass();
   constexpr double kPlausible = 0.01;
   const double largest_error_mm3 = 2.0 * slack_mm3 + kPlausible * facets.volume_mm3;

@@ -2,22 +2,21 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
 #include <string>
-#include <string_view>
 
 #include <assimp/Importer.hpp>
-#include <assimp/config.h>
 #include <assimp/mesh.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include "dowel/io/file.h"
 #include "dowel/kernel/error.h"
+#include "dowel/kernel/mass_properties.h"
 #include "dowel/kernel/mesh_defect.h"
 #include "dowel/kernel/tolerance.h"
 #include "mesh_faces.h"
 #include "part_names.h"
+#include "ply.h"
 #include "text_mesh.h"
 
 namespace dowel {
@@ -48,29 +47,22 @@ void append_mesh(const aiMesh& from, FacetedSolid& mesh) {
   }
 }
 
-/// The meshes of a file placed as it places them. From memory: a model may not open other files.
-FacetedSolid parse_by_assimp(const std::string& content, const std::string& ending) {
+/// The meshes of a binary glTF placed as it places them, brought from metres to millimetres and
+/// from y up to z up. From memory: a model may not open other files.
+FacetedSolid parse_glb(const std::string& content) {
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFileFromMemory(
-      content.data(), content.size(), aiProcess_Triangulate | aiProcess_PreTransformVertices,
-      ending.c_str());
+  const aiScene* scene =
+      importer.ReadFileFromMemory(content.data(), content.size(),
+                                  aiProcess_Triangulate | aiProcess_PreTransformVertices, "glb");
   if (scene == nullptr) {
-    throw Error(ErrorCode::FileMalformed, "cannot be read as a ." + ending +
-                                              " mesh: " + clean_text(importer.GetErrorString()));
+    throw Error(ErrorCode::FileMalformed,
+                "cannot be read as binary glTF: " + clean_text(importer.GetErrorString()));
   }
   FacetedSolid mesh;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) append_mesh(*scene->mMeshes[m], mesh);
+  constexpr double kMillimetresPerMetre = 1000.0;
+  for (Vector3d& v : mesh.vertices) v = kMillimetresPerMetre * Vector3d(v.x(), -v.z(), v.y());
   return mesh;
-}
-
-/// A binary STL says how long it is; its free header may begin with "solid" like a text.
-bool is_binary_stl(std::string_view content) {
-  constexpr std::size_t kHeader = 84;
-  constexpr std::size_t kRecord = 50;
-  if (content.size() < kHeader) return false;
-  std::uint32_t count = 0;
-  std::memcpy(&count, content.data() + kHeader - sizeof count, sizeof count);
-  return content.size() == kHeader + std::size_t{count} * kRecord;
 }
 
 FacetedSolid parse(const std::filesystem::path& file, const std::string& content) {
@@ -79,13 +71,11 @@ FacetedSolid parse(const std::filesystem::path& file, const std::string& content
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending == ".obj") return parse_obj(content);
   if (ending == ".off") return parse_off(content);
-  if (ending == ".stl" && !is_binary_stl(content)) return parse_ascii_stl(content);
-  FacetedSolid mesh = parse_by_assimp(content, ending.substr(1));
-  if (ending == ".glb") {
-    constexpr double kMillimetresPerMetre = 1000.0;
-    for (Vector3d& v : mesh.vertices) v = kMillimetresPerMetre * Vector3d(v.x(), -v.z(), v.y());
+  if (ending == ".ply") return parse_ply(content);
+  if (ending == ".stl") {
+    return is_binary_stl(content) ? parse_binary_stl(content) : parse_ascii_stl(content);
   }
-  return mesh;
+  return parse_glb(content);
 }
 
 void expect_coordinates_in_range(const FacetedSolid& mesh) {
@@ -130,6 +120,9 @@ FacetedSolid read_mesh(const std::filesystem::path& file,
   weld(mesh);
   expect_closed(mesh);
   orient_outward(mesh);
+  if (!(mass_properties(mesh).volume_mm3 > 0.0)) {
+    throw Error(ErrorCode::FileMalformed, "it encloses no volume, expected a solid");
+  }
   report(WorkerStage::Features);
   set_planar_faces(mesh);
   if (const auto defect = find_defect(mesh)) {

@@ -104,6 +104,9 @@ inline constexpr double kCoplanarRatio = 1.0e-9;
 
 static_assert(kCoincident_mm * 10 <= kSameFeature_mm);
 static_assert(kCoincident_mm * kFeatureSteps_per_mm >= 100);
+/// Import: relative error asked of the integration over spline faces.
+inline constexpr double kIntegrationRatio = 1.0e-6;
+
 static_assert(kTouchingSolids_mm * 1.0e6 <= kMinTolerance_mm);
 static_assert(kMinTolerance_mm * 100 <= kCoincident_mm * 1.0);
 static_assert(kCoincident_mm * 100 <= kDefaultTolerance_mm * 1.0);
