@@ -282,7 +282,12 @@ ProjectState ProjectDatabase::read_state() const {
     ProjectState state;
     SQLite::Statement settings(database_, "SELECT name, value FROM setting ORDER BY name");
     while (settings.executeStep()) {
-      apply_setting(state, {settings.getColumn(0).getString(), settings.getColumn(1).getString()});
+      const SettingRow row{settings.getColumn(0).getString(), settings.getColumn(1).getString()};
+      try {
+        apply_setting(state, row);
+      } catch (const Error& error) {
+        throw Error(error.code(), title_ + ": is damaged: " + error.what());
+      }
     }
     SQLite::Statement instances(database_,
                                 "SELECT number, name, element, qw, qx, qy, qz, x_mm, y_mm, z_mm, "
