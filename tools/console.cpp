@@ -1,0 +1,178 @@
+#include "console.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "console_commands.h"
+#include "dowel/assembly/suggest.h"
+
+namespace dowel::tools {
+namespace {
+
+constexpr std::array kCommands{
+    Command{"catalog", "FILE", "Takes elements from this catalogue.", "catalog h40.db", false,
+            run_catalog},
+    Command{"new", "FILE", "Starts a project in a new file; what was open is closed.",
+            "new fixture.dwp", true, run_new},
+    Command{"open", "FILE", "Goes on with the project of a file; what was open is closed.",
+            "open fixture.dwp", false, run_open},
+    Command{"save", "[FILE]",
+            "Writes a copy of the project; one that has no file yet goes on in FILE.",
+            "save variant.dwp", true, run_save},
+    Command{"place",
+            "ELEMENT [as NAME] [at X Y Z | at INST.FEATURE | on INST.FACE] [rot DEG [about x|y|z]]",
+            "Places an element: with its origin at a point or feature, or standing on a face.",
+            "place H40-12/riser-80x80x40 as R1 on PLATE1.top rot 90", true, run_place},
+    Command{
+        "insert",
+        "INST.FEATURE into INST.FEATURE [seat INST.FACE on INST.FACE] [offset MM] [rot DEG] "
+        "[flip]",
+        "Moves the first instance so that axis goes on axis, or face on face; the second stays.",
+        "insert PIN1.pin1 into R1.h1 offset 2", true, run_insert},
+    Command{"move", "NAME by DX DY DZ | to X Y Z | along x|y|z|INST.FEATURE MM",
+            "Moves an instance on a straight line and checks the way.", "move R1 along x -40", true,
+            run_move},
+    Command{"rotate", "NAME DEG [about x|y|z|INST.FEATURE]",
+            "Turns an instance about its origin (z unless told) or about a feature's axis.",
+            "rotate R1 90 about PLATE1.C4", true, run_rotate},
+    Command{"remove", "NAME", "Takes an instance and its mates out of the project.", "remove R1",
+            true, run_remove},
+    Command{"ground", "NAME [off]", "Holds an instance in its place, or lets it go.",
+            "ground PLATE1", true, run_ground},
+    Command{"mode", "[block|warn|off]",
+            "What becomes of a move that interferes: taken back, reported, or not looked at.",
+            "mode warn", true, run_mode},
+    Command{"tolerance", "[MM]", "Tolerance between contact and interference.", "tolerance 0.02",
+            true, run_tolerance},
+    Command{"undo", "[N]", "Takes back the last N commands that changed something (1).", "undo 2",
+            true, run_undo},
+    Command{"redo", "[N]", "Does again what was undone (1).", "redo", true, run_redo},
+    Command{"list", "[instances|elements|mates|features NAME]",
+            "Lists what there is; NAME is an instance or an element.", "list features PLATE1", true,
+            run_list},
+    Command{"show", "NAME", "Tells all about an instance or an element.", "show R1", true,
+            run_show},
+    Command{"bom", "[FILE.csv]", "Bill of materials, on the screen or as CSV.", "bom parts.csv",
+            true, run_bom},
+    Command{"check", "", "Checks all pairs; exit code 1 where any interferes.", "check", true,
+            run_check},
+    Command{"export", "FILE.step|.glb|.html|.csv|.dowel",
+            "Writes the assembly (STEP, GLB, page), the bill of materials or the commands as a "
+            "script.",
+            "export fixture.step", true, run_export},
+    Command{"history", "", "The commands that made the project; undone ones are marked.", "history",
+            true, run_history},
+    Command{"expect", "clear|contact|interference|refused|error COMMAND",
+            "Runs a command that is to end like that; anything else fails the script.",
+            "expect refused move R1 by 0 0 -5", false, run_expect},
+    Command{"help", "[WORD]", "Explains a command, or lists all.", "help insert", false, run_help},
+    Command{"quit", "", "Leaves; everything is saved already.", "quit", false, run_quit},
+};
+
+/// Keywords of a command: the lower-case words in its arguments.
+std::vector<std::string> keywords(const Command& command) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : command.arguments) {
+    if (c >= 'a' && c <= 'z') {
+      word += c;
+      continue;
+    }
+    // "FILE.step" and "x" hold no keyword worth completing.
+    if (c != '.' && word.size() > 1) words.push_back(word);
+    word.clear();
+  }
+  if (word.size() > 1) words.push_back(word);
+  return words;
+}
+
+}  // namespace
+
+std::span<const Command> commands() {
+  return kCommands;
+}
+
+const Command* find_command(std::string_view word) {
+  const auto* const found = std::ranges::find(kCommands, word, &Command::word);
+  return found == kCommands.end() ? nullptr : found;
+}
+
+const Command& command_for(const Word& word) {
+  if (const Command* found = find_command(word.text)) return *found;
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) names.emplace_back(command.word);
+  const std::vector<std::string> similar = similar_words(word.text, names);
+  throw CommandError(ErrorCode::InvalidInput,
+                     "unknown command \"" + word.text + "\"" +
+                         (similar.empty() ? "; `help` lists all" : did_you_mean(similar)),
+                     word.column);
+}
+
+Console::Console() {
+  adopt(Project());
+}
+
+void Console::adopt(Project project) {
+  session_ = std::make_unique<Session>(std::move(project));
+  session_->use_catalog(catalog_);
+}
+
+void Console::create(const std::filesystem::path& file) {
+  adopt(Project::create(file));
+}
+
+void Console::open(const std::filesystem::path& file) {
+  adopt(Project::open(file));
+}
+
+void Console::use_catalog(const std::filesystem::path& file) {
+  catalog_ = std::make_shared<const Catalog>(file, Catalog::Access::ReadOnly);
+  session_->use_catalog(catalog_);
+}
+
+Reply Console::run(const std::vector<Word>& words) {
+  const Command& command = command_for(words.front());
+  Arguments arguments(words);
+  try {
+    return command.run(*this, arguments);
+  } catch (const CommandError&) {
+    throw;
+  } catch (const Error& error) {
+    throw CommandError(error.code(), error.what(), words.front().column);
+  }
+}
+
+std::vector<std::string> Console::completions(const std::vector<Word>& before,
+                                              std::string_view start) {
+  std::set<std::string> candidates;
+  const Command* command = before.empty() ? nullptr : find_command(before.front().text);
+  const std::size_t dot = start.find('.');
+  if (before.empty() || before.back().text == "help") {
+    for (const Command& known : kCommands) candidates.emplace(known.word);
+  } else if (command != nullptr) {
+    const std::vector<std::string> words = keywords(*command);
+    candidates.insert(words.begin(), words.end());
+    if (command->arguments.find("ELEMENT") != std::string_view::npos || command->word == "show" ||
+        command->word == "list") {
+      const std::vector<std::string> elements = session_->element_names();
+      candidates.insert(elements.begin(), elements.end());
+    }
+    const Instance* owner =
+        dot == std::string_view::npos ? nullptr : session_->state().find(start.substr(0, dot));
+    if (owner != nullptr) {
+      for (const Feature& feature : session_->element(owner->element).features) {
+        candidates.insert(owner->name + "." + feature.name);
+      }
+    }
+    for (const auto& [name, instance] : session_->state().instances) candidates.insert(name);
+  }
+  std::vector<std::string> result;
+  std::ranges::copy_if(candidates, std::back_inserter(result),
+                       [&](const std::string& name) { return name.starts_with(start); });
+  return result;
+}
+
+}  // namespace dowel::tools

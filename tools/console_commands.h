@@ -1,0 +1,33 @@
+#pragma once
+
+// What the words of the console do. Each reads its arguments to the end before it acts.
+
+#include "console.h"
+
+namespace dowel::tools {
+
+Reply run_catalog(Console& console, Arguments& arguments);
+Reply run_new(Console& console, Arguments& arguments);
+Reply run_open(Console& console, Arguments& arguments);
+Reply run_save(Console& console, Arguments& arguments);
+Reply run_place(Console& console, Arguments& arguments);
+Reply run_insert(Console& console, Arguments& arguments);
+Reply run_move(Console& console, Arguments& arguments);
+Reply run_rotate(Console& console, Arguments& arguments);
+Reply run_remove(Console& console, Arguments& arguments);
+Reply run_ground(Console& console, Arguments& arguments);
+Reply run_mode(Console& console, Arguments& arguments);
+Reply run_tolerance(Console& console, Arguments& arguments);
+Reply run_undo(Console& console, Arguments& arguments);
+Reply run_redo(Console& console, Arguments& arguments);
+Reply run_list(Console& console, Arguments& arguments);
+Reply run_show(Console& console, Arguments& arguments);
+Reply run_bom(Console& console, Arguments& arguments);
+Reply run_check(Console& console, Arguments& arguments);
+Reply run_export(Console& console, Arguments& arguments);
+Reply run_history(Console& console, Arguments& arguments);
+Reply run_expect(Console& console, Arguments& arguments);
+Reply run_help(Console& console, Arguments& arguments);
+Reply run_quit(Console& console, Arguments& arguments);
+
+}  // namespace dowel::tools
