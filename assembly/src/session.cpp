@@ -271,6 +271,8 @@ const Project& Session::project() const {
 }
 
 void Session::use_catalog(std::shared_ptr<const Catalog> catalog) {
+  // A placement that was refused has left its body behind.
+  if (!impl_->candidates.empty()) impl_->bodies.follow(state());
   for (const auto& [name, candidate] : impl_->candidates) impl_->bodies.forget(name);
   impl_->candidates.clear();
   impl_->catalog = std::move(catalog);
