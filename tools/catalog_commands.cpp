@@ -299,7 +299,7 @@ std::string to_text(const Element& element) {
   for (const auto& [title, value] : lines) {
     std::string padded(title);
     padded.resize(16, ' ');
-    text += padded + printable(value) + "\n";
+    text += (value.empty() ? title : padded + printable(value)) + "\n";
   }
   return text + "\n" + features_text(element);
 }

@@ -72,6 +72,8 @@ std::vector<Input> expand(std::span<const std::filesystem::path> paths) {
   std::vector<Input> inputs;
   for (const std::filesystem::path& path : paths) {
     for (Input& input : expand(path)) {
+      // "./parts/a.step" is the same source as "parts/a.step".
+      input.path = input.path.lexically_normal();
       std::error_code problem;
       std::filesystem::path key = std::filesystem::weakly_canonical(input.path, problem);
       if (problem) key = input.path;

@@ -63,10 +63,10 @@ struct ProgramResult {
 };
 
 struct ProgramOptions {
-  std::filesystem::path folder;  ///< working folder; empty: the caller's
-  std::string input;             ///< standard input
-  std::filesystem::path out;     ///< where standard output goes instead of `ProgramResult::out`
-  std::vector<std::pair<std::string, std::string>> environment;  ///< added or replaced
+  std::filesystem::path folder{};  ///< working folder; empty: the caller's
+  std::string input{};             ///< standard input
+  std::filesystem::path out{};     ///< where standard output goes instead of `ProgramResult::out`
+  std::vector<std::pair<std::string, std::string>> environment{};  ///< added or replaced
 };
 
 /// Runs `program` with `arguments` to its end.

@@ -34,7 +34,9 @@ std::string_view to_string(BuildStatus status);
 
 /// What became of one file.
 struct BuiltFile {
-  std::string file;  ///< as given, or folder as given + path in it
+  /// As given, or folder as given + path in it; without detours such as "./" or "x/../". The
+  /// catalogue knows the file by it.
+  std::string file;
   BuildStatus status = BuildStatus::Failed;
   std::string reason;                 ///< why Empty or Failed
   std::vector<std::string> elements;  ///< their names in the catalogue
