@@ -170,10 +170,8 @@ inline FacetedSolid merged(FacetedSolid a, const FacetedSolid& b) {
     a.triangles.push_back({t[0] + vertex_offset, t[1] + vertex_offset, t[2] + vertex_offset});
   }
   for (const std::uint32_t face : b.face_of) a.face_of.push_back(face + face_offset);
-  for (Face face : b.faces) {
-    face.solid += a.solid_count;
-    a.faces.push_back(face);
-  }
+  a.faces.insert(a.faces.end(), b.faces.begin(), b.faces.end());
+  for (std::size_t f = face_offset; f < a.faces.size(); ++f) a.faces[f].solid += a.solid_count;
   for (Edge edge : b.edges) {
     edge.faces = {edge.faces[0] + face_offset, edge.faces[1] + face_offset};
     a.edges.push_back(edge);
