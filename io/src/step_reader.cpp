@@ -174,14 +174,17 @@ class PartCollector {
     return std::move(parts_);
   }
 
-  /// All roots placed, as one part with the name of the only root, or none.
+  /// All roots placed, as one part with the name of the only root, or none. An assembly has no
+  /// colour: its parts have.
   StepPart whole() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
     StepPart part;
     if (roots.Length() == 1) {
       part.name = name_of(roots.First());
-      part.colour = colour_of(roots.First(), shapes_->GetShape(roots.First()));
+      if (!shapes_->IsAssembly(roots.First())) {
+        part.colour = colour_of(roots.First(), shapes_->GetShape(roots.First()));
+      }
     }
     BRep_Builder builder;
     TopoDS_Compound compound;
