@@ -9,8 +9,8 @@
 
 namespace dowel {
 
-/// Right and up as seen by someone who looks against `normal` at the plane: up is +y on a plane that
-/// lies (closer to level than 45 degrees), +z on one that stands. Right, up and `normal` are
+/// Right and up as seen by someone who looks against `normal` at the plane: up is +y on a plane
+/// that lies (closer to level than 45 degrees), +z on one that stands. Right, up and `normal` are
 /// right-handed.
 struct ViewFrame {
   Eigen::Vector3d right = Eigen::Vector3d::UnitX();

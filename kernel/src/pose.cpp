@@ -27,8 +27,7 @@ Pose Pose::from_matrix(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& t
   return {Eigen::Quaterniond(rotation).normalized(), translation};
 }
 
-Pose Pose::about_axis(const Eigen::Vector3d& point, const Eigen::Vector3d& axis,
-                      double angle_rad) {
+Pose Pose::about_axis(const Eigen::Vector3d& point, const Eigen::Vector3d& axis, double angle_rad) {
   const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle_rad, axis));
   return {rotation, point - rotation * point};
 }

@@ -11,9 +11,9 @@
 #include "random_geometry.h"
 
 using dowel::Feature;
+using dowel::mate_residual;
 using dowel::MateKind;
 using dowel::MateOptions;
-using dowel::mate_residual;
 using dowel::MatePlacement;
 using dowel::place_by_mate;
 using dowel::PlacedFeature;

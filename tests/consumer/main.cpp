@@ -1,4 +1,5 @@
 #include <cstdio>
+
 #include <dowel/catalog/catalog.h>
 #include <dowel/collision/scene.h>
 

@@ -1,5 +1,6 @@
 // What locates the workpiece: edge locators, pins and their holders, V-blocks.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -158,6 +159,17 @@ Part pin_holder(const PinHolderSize& size) {
   return part;
 }
 
+/// `hole` where its opening lies `depth_mm` deeper, still in its first segment.
+Feature opened_deeper(Feature hole, double depth_mm) {
+  hole.origin += depth_mm * hole.direction;
+  hole.depth_mm -= depth_mm;
+  for (HoleSegment& segment : hole.segments) {
+    segment.from_mm = std::max(0.0, segment.from_mm - depth_mm);
+    segment.to_mm -= depth_mm;
+  }
+  return hole;
+}
+
 Part vee_block(const VeeBlockSize& size) {
   Part part;
   const double half_mm = size.width_mm / 2.0;
@@ -194,6 +206,10 @@ Part vee_block(const VeeBlockSize& size) {
                                      {half_mm, 0.0}},
                                     size.width_mm);
   part.solid = drilled(body, part.features);
+  // The drill starts at the height of the block; what is left of the hole opens in the V.
+  for (DesignedFeature& screw : part.features) {
+    screw.geometry = opened_deeper(screw.geometry, size.height_mm - apex_z_mm);
+  }
   const double flank_z_mm = (apex_z_mm + size.height_mm) / 2.0;
   const Eigen::Vector3d right(-std::cos(half_angle_rad), 0.0, std::sin(half_angle_rad));
   const Eigen::Vector3d left(std::cos(half_angle_rad), 0.0, std::sin(half_angle_rad));

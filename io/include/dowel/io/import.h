@@ -20,7 +20,7 @@ struct ImportOptions {
   /// True: all solids of the file become one part, placed as the file places them. False: each
   /// distinct part of an assembly becomes a part of its own.
   bool whole_file = false;
-  double max_seconds = 120.0;      ///< wall clock of the worker
+  double max_seconds = 120.0;        ///< wall clock of the worker
   std::size_t max_memory_mb = 4096;  ///< address space of the worker
 };
 
@@ -55,8 +55,9 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// Failed result. The child is forked: expects that no other thread of the process is running.
 ImportResult import_file(const std::filesystem::path& file, const ImportOptions& options);
 
-/// The same for many files, `jobs` children at a time. `on_done(i, result)` is called in the calling
-/// thread as each finishes, in the order of `files`; where it returns false no more are started.
+/// The same for many files, `jobs` children at a time. `on_done(i, result)` is called in the
+/// calling thread as each finishes, in the order of `files`; where it returns false no more are
+/// started.
 void import_files(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
                   unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done);
 

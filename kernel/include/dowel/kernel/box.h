@@ -12,10 +12,8 @@ namespace dowel {
 
 /// Axis-aligned bounding box, closed on all sides: boxes that touch overlap. Default: empty.
 struct Aabb {
-  Eigen::Vector3d min =
-      Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d max =
-      Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
 
   bool is_empty() const noexcept { return !(min.array() <= max.array()).all(); }
   bool overlaps(const Aabb& other) const noexcept {
@@ -35,9 +33,7 @@ struct Aabb {
     max = max.cwiseMax(other.max);
   }
   /// Grown by `margin_mm` on every side.
-  Aabb padded(double margin_mm) const {
-    return {min.array() - margin_mm, max.array() + margin_mm};
-  }
+  Aabb padded(double margin_mm) const { return {min.array() - margin_mm, max.array() + margin_mm}; }
 };
 
 /// Oriented bounding box: `center`, right-handed orthonormal `axes` (one per column) and half the
@@ -49,9 +45,7 @@ struct Obb {
 
   double volume_mm3() const { return 8.0 * half_extents_mm.prod(); }
   /// Grown by `margin_mm` on every side.
-  Obb padded(double margin_mm) const {
-    return {center, axes, half_extents_mm.array() + margin_mm};
-  }
+  Obb padded(double margin_mm) const { return {center, axes, half_extents_mm.array() + margin_mm}; }
   /// Signed distance from the box: the largest of the six face distances, negative inside.
   double face_distance_mm(const Eigen::Vector3d& point) const {
     return ((axes.transpose() * (point - center)).cwiseAbs() - half_extents_mm).maxCoeff();

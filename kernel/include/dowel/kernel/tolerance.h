@@ -17,8 +17,8 @@ inline constexpr double kParallel_rad = 1.0e-7;
 /// that is 0.1 um, what kCoincident_mm forgives.
 inline constexpr double kUnitVectorSlack = 1.0e-9;
 
-/// Boxes whose volumes differ by less than this part are equally large, and the better aligned one is
-/// taken: well over the rounding of a volume, well under what anybody would call smaller.
+/// Boxes whose volumes differ by less than this part are equally large, and the better aligned one
+/// is taken: well over the rounding of a volume, well under what anybody would call smaller.
 inline constexpr double kEqualVolumes = 1.0e-9;
 
 /// A quaternion read from outside may miss unit length by this much (FORMATS: scene files).
@@ -28,17 +28,17 @@ inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 /// much (a ratio): rounding of any writer, far below what shows on a part.
 inline constexpr double kStoredAxisSlack = 1.0e-6;
 
-/// Recognition: axes, radii, planes and rims closer than this belong to one feature, and a free-form
-/// face that misses a plane, cylinder or cone by no more is one: a micrometre, what exporters that
-/// write B-splines only leave, and a third of the tightest clearance in a fixture.
+/// Recognition: axes, radii, planes and rims closer than this belong to one feature, and a
+/// free-form face that misses a plane, cylinder or cone by no more is one: a micrometre, what
+/// exporters that write B-splines only leave, and a third of the tightest clearance in a fixture.
 inline constexpr double kSameFeature_mm = 1.0e-3;
 
 /// Recognition: iterations stop at, and components of directions are zero below, this ratio: a few
 /// thousand ulp, ten orders below what a fixture shows.
 inline constexpr double kRounding = 1.0e-12;
 
-/// Recognition: lengths of features are rounded to a picometre, so that 30 reads 30 whatever pose the
-/// exporter wrote. Steps in a millimetre, because a quotient by it is the nearest double.
+/// Recognition: lengths of features are rounded to a picometre, so that 30 reads 30 whatever pose
+/// the exporter wrote. Steps in a millimetre, because a quotient by it is the nearest double.
 inline constexpr double kFeatureSteps_per_mm = 1.0e9;
 
 /// Default tolerance between contact and interference, and between clear and contact.
@@ -50,12 +50,12 @@ inline constexpr double kMinTolerance_mm = 1.0e-6;
 /// Largest tolerance accepted: beyond it whole parts would count as touching.
 inline constexpr double kMaxTolerance_mm = 10.0;
 
-/// Pictures: faces that meet at less than this run into each other without a visible edge. A degree,
-/// as for Convexity::Smooth.
+/// Pictures: faces that meet at less than this run into each other without a visible edge. A
+/// degree, as for Convexity::Smooth.
 inline constexpr double kTangent_rad = 0.0175;
 
-/// Pictures: neighbouring facets of one free-form face that turn more than this meet at a crease. 40
-/// degrees: more than the facets of a curved face turn (up to 0.5 rad), less than any bevel.
+/// Pictures: neighbouring facets of one free-form face that turn more than this meet at a crease.
+/// 40 degrees: more than the facets of a curved face turn (up to 0.5 rad), less than any bevel.
 inline constexpr double kCrease_rad = 0.7;
 
 static_assert(kTangent_rad < kCrease_rad);
@@ -85,8 +85,9 @@ inline constexpr double kBoxSlackRatio = 1.0e-9;
 /// what the facet error explains: CAD kernels integrate free-form faces no better.
 inline constexpr double kVolumeSlackRatio = 1.0e-3;
 
-/// Import: facets of STEP parts deviate by a thousandth of the part's diagonal, but no less than 5 um
-/// (twice what matters at the default tolerance, halved again by the mesher) and no more than 0.1 mm.
+/// Import: facets of STEP parts deviate by a thousandth of the part's diagonal, but no less than 5
+/// um (twice what matters at the default tolerance, halved again by the mesher) and no more than
+/// 0.1 mm.
 inline constexpr double kMinDeflection_mm = 0.005;
 inline constexpr double kMaxDeflection_mm = 0.1;
 
@@ -94,8 +95,8 @@ inline constexpr double kMaxDeflection_mm = 0.1;
 /// systems call coincident in their coarsest setting.
 inline constexpr double kSewing_mm = 1.0e-3;
 
-/// Import: touching solids of one part are told apart by moving shared vertices this far, or two ulp
-/// where that is more. Far below every tolerance.
+/// Import: touching solids of one part are told apart by moving shared vertices this far, or two
+/// ulp where that is more. Far below every tolerance.
 inline constexpr double kTouchingSolids_mm = 1.0e-12;
 
 /// Import: neighbouring triangles of a mesh file are one planar face where no corner leaves the
