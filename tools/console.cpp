@@ -59,7 +59,7 @@ constexpr std::array kCommands{
             true, run_bom},
     Command{"check", "", "Checks all pairs; exit code 1 where any interferes.", "check", true,
             run_check},
-    Command{"export", "FILE.step|.glb|.html|.csv|.dowel",
+    Command{"export", "FILE.step|.glb|.html|.png|.csv|.dowel",
             "Writes the assembly (STEP, GLB, page), the bill of materials or the commands as a "
             "script.",
             "export fixture.step", true, run_export},

@@ -7,6 +7,7 @@
 #include "console_text.h"
 #include "dowel/io/file.h"
 #include "dowel/io/scene_page.h"
+#include "dowel/io/snapshot.h"
 #include "dowel/io/step_writer.h"
 
 namespace dowel::tools {
@@ -127,6 +128,8 @@ void export_session(Session& session, const std::filesystem::path& file) {
     write_glb(file, display_scene(session));
   } else if (ending == ".html") {
     write_page(file, display_scene(session));
+  } else if (ending == ".png") {
+    write_png(file, display_scene(session));
   } else if (ending == ".csv") {
     write_file(file, bom_csv(session));
   } else if (ending == ".dowel") {
@@ -139,7 +142,8 @@ void export_session(Session& session, const std::filesystem::path& file) {
   } else {
     throw Error(
         ErrorCode::InvalidInput,
-        file.string() + ": unknown ending, expected .step, .glb, .html, .csv or .dowel (a script)");
+        file.string() +
+            ": unknown ending, expected .step, .glb, .html, .png, .csv or .dowel (a script)");
   }
 }
 
