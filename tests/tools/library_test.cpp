@@ -309,20 +309,16 @@ TEST_CASE("neighbouring holes and edges leave walls of two millimetres") {
 
 TEST_CASE("the same parts give the same files, in any order, and they read back", "[determinism]") {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
-  // One of each kind, and made anew the second time.
+  // Every tenth, and made anew the second time.
   const auto samples = [] {
     std::vector<Part> all = make_small_parts();
     std::vector<Part> some;
-    std::set<std::string> kinds;
-    for (Part& part : all) {
-      if (kinds.insert(part.description).second && some.size() < 24)
-        some.push_back(std::move(part));
-    }
+    for (std::size_t i = 0; i < all.size(); i += 10) some.push_back(std::move(all[i]));
     return some;
   };
   const std::vector<Part> parts = samples();
   std::vector<Part> again = samples();
-  CHECK(parts.size() == 24);
+  CHECK(parts.size() >= 12);
   std::reverse(again.begin(), again.end());
   const Folder first;
   const Folder second;
