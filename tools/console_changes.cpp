@@ -165,7 +165,7 @@ Reply run_place(Console& console, Arguments& arguments) {
     X_WI = Pose::about_axis(X_WI.translation(), axis_W.normalized(), placing.turn_rad) * X_WI;
   }
   const MoveReport report = console.session().place(element, placing.name, X_WI, arguments.line());
-  Reply reply = to_reply(report, "placed");
+  Reply reply = to_reply(report, "placed at");
   reply.json["element"] = element;
   return reply;
 }
@@ -196,7 +196,7 @@ Reply run_insert(Console& console, Arguments& arguments) {
     }
   }
   const MoveReport report = console.session().insert(request, arguments.line());
-  Reply reply = to_reply(report, "inserted");
+  Reply reply = to_reply(report, "inserted at");
   if (report.made && report.made->thread) reply.text += ", threaded";
   return reply;
 }
@@ -216,7 +216,7 @@ Reply run_move(Console& console, Arguments& arguments) {
     arguments.fail("expected `by`, `to` or `along`");
   }
   arguments.expect_end();
-  return to_reply(console.session().move(name, to_W, arguments.line()), "moved");
+  return to_reply(console.session().move(name, to_W, arguments.line()), "moved to");
 }
 
 Reply run_rotate(Console& console, Arguments& arguments) {
@@ -229,7 +229,7 @@ Reply run_rotate(Console& console, Arguments& arguments) {
       axis.point_W.value_or(console.session().instance(name).X_WI.translation());
   return to_reply(
       console.session().rotate(name, point_W, axis.direction_W, angle_rad, arguments.line()),
-      "turned");
+      "turned, at");
 }
 
 Reply run_remove(Console& console, Arguments& arguments) {

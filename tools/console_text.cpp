@@ -105,7 +105,7 @@ Reply to_reply(const MoveReport& report, std::string_view done) {
                     point_text(report.X_WI_free.translation());
     }
   } else {
-    reply.text += std::string(done) + " at " + point_text(report.X_WI.translation());
+    reply.text += std::string(done) + " " + point_text(report.X_WI.translation());
     if (!report.checked) {
       reply.text += ", not checked";
     } else {

@@ -29,7 +29,7 @@ Json to_json(const Instance& instance);
 /// "interference with BLOCK1 (depth 2.5 mm at 10 0 30), contact with PLATE1"
 std::string touches_text(const std::vector<Touch>& touches);
 
-/// Reply to a placement or move.
+/// Reply to a placement or move. `done`: what stands before the place, "moved to".
 Reply to_reply(const MoveReport& report, std::string_view done);
 
 }  // namespace dowel::tools

@@ -79,8 +79,9 @@ class ScriptRun {
 
   bool go_on() const {
     if (options_.keep_going) return true;
-    std::fprintf(stderr, "%s: stopped; the %s before stay done\n", printable(name_).c_str(),
-                 counted(done_, "command").c_str());
+    const std::string before =
+        done_ == 0 ? std::string() : "; " + counted(done_, "command") + " before it stay done";
+    std::fprintf(stderr, "%s: stopped%s\n", printable(name_).c_str(), before.c_str());
     return false;
   }
 

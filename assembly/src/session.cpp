@@ -432,11 +432,14 @@ MoveReport Session::rotate(std::string_view name, const Eigen::Vector3d& point_W
   DOWEL_EXPECTS(std::abs(angle_rad) <= 2.0 * std::numbers::pi + kParallel_rad);
   const Pose from = impl_->movable(name).X_WI;
   const int legs = std::max(1, static_cast<int>(std::ceil(std::abs(angle_rad) / kLargestLeg_rad)));
-  // A frame on the axis only turns, so that its straight path makes the part's path the arc.
+  // A frame on the axis only turns, so that its straight path makes the part's path the arc. The
+  // nearer it is to the part, the better the bound that a sweep has for the way of its points.
+  const Eigen::Vector3d center_W = from * impl_->element(impl_->instance(name).element).obb.center;
+  const Eigen::Vector3d pivot_W = point_W + axis_W.dot(center_W - point_W) * axis_W;
   std::vector<Pose> X_WU;
   for (int leg = 0; leg <= legs; ++leg) {
     X_WU.emplace_back(Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad * leg / legs, axis_W)),
-                      point_W);
+                      pivot_W);
   }
   return impl_->travel(name, X_WU, Pose::about_axis(point_W, axis_W, angle_rad) * from, command);
 }

@@ -186,7 +186,7 @@ TEST_CASE("a script stops at its first error and keeps what was done, or goes on
   const auto stopped = desk.script(text, {"--project", "a.dwp"});
   CHECK(stopped.exit_code == 3);
   CHECK(stopped.err.find("job.dowel:2:7: error: ") == 0);
-  CHECK(stopped.err.find("the 1 command before stay done") != std::string::npos);
+  CHECK(stopped.err.find("stopped; 1 command before it stay done") != std::string::npos);
   CHECK(Json::parse(desk.dowel({"list", "--project", "a.dwp", "--json"}).out)["instances"].size() ==
         1);
 
@@ -274,7 +274,8 @@ TEST_CASE("every example of the help is a line that the console understands") {
   const auto all = desk.dowel({"run", "-", "--json"}, "help\n");
   REQUIRE(all.exit_code == 0);
   std::size_t examples = 0;
-  for (const Json& word : Json::parse(all.out)["commands"]) {
+  const Json reply = Json::parse(all.out);
+  for (const Json& word : reply["commands"]) {
     const auto one = desk.dowel({"run", "-", "--json"}, "help " + word.get<std::string>() + "\n");
     const std::string example = Json::parse(one.out)["example"];
     CAPTURE(example);
@@ -295,7 +296,7 @@ TEST_CASE("exports appear whole, and a disk without room damages nothing", "[fau
   CHECK(desk.dowel({"export", "a.glb", "--project", "a.dwp"}).exit_code == 0);
   CHECK(testing::read_text(desk.folder / "a.glb").substr(0, 4) == "glTF");
   CHECK(desk.dowel({"export", "a.html", "--project", "a.dwp"}).exit_code == 0);
-  CHECK(testing::read_text(desk.folder / "a.html").find("RISER2") != std::string::npos);
+  CHECK(testing::read_text(desk.folder / "a.html").find("</html>") != std::string::npos);
   const auto step = desk.dowel({"export", "a.step", "--project", "a.dwp"});
   CHECK(step.exit_code == 3);
   CHECK(step.err.find("has no boundary representation") != std::string::npos);
