@@ -134,7 +134,7 @@ TEST_CASE("bad lines name file, line and column, and what was expected") {
   const Desk desk;
   const std::vector<Case> cases{
       {"plaec T/block-40", "1:1", "did you mean place?"},
-      {"  place T/blok-40", "1:9", "did you mean T/block-40?"},
+      {"  place T/blok-40", "1:9", "did you mean T/block-40"},
       {"place", "1:1", "expected an element"},
       {"place T/block-40 at 1 2", "1:23", "expected three coordinates"},
       {"place T/block-40 at 1 2 nan", "1:25", "expected three coordinates"},
