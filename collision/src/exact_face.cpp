@@ -52,37 +52,41 @@ double beyond_edge(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d&
   return along.cross(t.normal).dot(c - a);
 }
 
-bool ends_in_curve(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
-  if (t.edges[i] != EdgeShape::Convex && t.edges[i] != EdgeShape::Concave) return false;
-  const Face& beyond = model.face(t.neighbours[i]);
-  return is_exact(beyond) && !is_plane(beyond.surface);
-}
-
-enum class Footing { Inside, Outside, Overhang };
-
-/// Whether `c`, a little beyond edge `i`, is seen from the edge at a right angle: the rim's arc
-/// over a chord lies there and nowhere else.
+/// Whether `c` is seen from edge `i` at a right angle: the rim's arc over a chord lies there and
+/// nowhere else.
 bool is_over_chord(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
   const Eigen::Vector3d chord = t.corners[(i + 1) % 3] - t.corners[i];
   const double along = chord.dot(c - t.corners[i]);
   return along >= 0.0 && along <= chord.squaredNorm();
 }
 
-/// Whether the foot `c` on the plane of a planar facet belongs to the exact face: facets overhang
-/// the rims of holes and fall short of the rims of discs.
-Footing footing_on_plane(const CollisionModel& model, const ModelTriangle& t,
-                         const Eigen::Vector3d& c) {
-  bool outside = false;
-  bool overhang = false;
+/// Whether the foot `c` on the plane of a planar facet lies between one of its chords and the arc
+/// over it, where facets fall short of the rim of a disc.
+bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
+                     const Eigen::Vector3d& c) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double beyond = beyond_edge(t, i, c);
-    outside = outside || beyond > 0.0;
-    if (std::abs(beyond) > t.slack_mm || !ends_in_curve(model, t, i)) continue;
-    const bool on_side = on_face_side(model.face(t.neighbours[i]), t.edges[i], c);
-    if (beyond > 0.0 && on_side && is_over_chord(t, i, c)) return Footing::Inside;
-    overhang = overhang || (beyond <= 0.0 && !on_side);
+    if (beyond <= 0.0 || beyond > t.slack_mm || !is_chord(model, t, i)) continue;
+    if (is_over_chord(t, i, c) && on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
+      return true;
+    }
   }
-  return outside ? Footing::Outside : overhang ? Footing::Overhang : Footing::Inside;
+  return false;
+}
+
+/// Whether the place `c` of facet `index` lies between a chord and the arc over it, where facets
+/// overhang the rims of holes.
+bool overhangs_rim(const CollisionModel& model, std::uint32_t index, const Eigen::Vector3d& c) {
+  return std::ranges::any_of(model.overhangs(index), [&](const Chord& chord) {
+    const ModelTriangle& t = model.triangles()[chord.triangle];
+    const double beyond = beyond_edge(t, chord.edge, c);
+    return beyond < 0.0 && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
+           !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
+  });
+}
+
+bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& c) {
+  return beyond_edge(t, 0, c) <= 0.0 && beyond_edge(t, 1, c) <= 0.0 && beyond_edge(t, 2, c) <= 0.0;
 }
 
 /// Whether the foot `c` on a curved surface lies over the facet, seen along the surface's normal.
@@ -151,13 +155,6 @@ FacePoint nearest_on_arc(const CollisionModel& model, const ModelTriangle& t, st
       t.edges[i] == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim);
 }
 
-/// True where edge `i` is the chord of a curve in which two exact faces meet.
-bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
-  return t.slack_mm > 0.0 &&
-         (t.edges[i] == EdgeShape::Convex || t.edges[i] == EdgeShape::Concave) &&
-         is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
-}
-
 /// Nearest place on the rim of the patch, once it is known not to be inside.
 FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriangle& t,
                                   const TrianglePoint& q, const Eigen::Vector3d& p) {
@@ -180,7 +177,33 @@ FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriang
   return at(closest_point(model.face(t.face).surface, q.point), p, place);
 }
 
+FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle& t,
+                                const Eigen::Vector3d& p) {
+  const Face& face = model.face(t.face);
+  if (t.slack_mm == 0.0) {
+    const TrianglePoint q = closest_on_triangle(t.corners, p);
+    if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
+    return nearest_on_rim_of_patch(model, t, q, p);
+  }
+  if (is_plane(face.surface)) {
+    const Eigen::Vector3d c = p - t.normal * t.normal.dot(p - t.corners[0]);
+    if (is_inside(t, c) || is_short_of_rim(model, t, c)) return at(c, p, FacePoint::Place::Face);
+    return nearest_on_rim_of_patch(model, t, closest_on_triangle(t.corners, p), p);
+  }
+  const Eigen::Vector3d c = closest_point(face.surface, p);
+  if (foot_is_over(t, face, c)) return at(c, p, FacePoint::Place::Face);
+  const TrianglePoint q = closest_on_triangle(t.corners, p);
+  if (q.region == 0) return at(closest_point(face.surface, q.point), p, FacePoint::Place::Face);
+  return nearest_on_rim_of_patch(model, t, q, p);
+}
+
 }  // namespace
+
+bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
+  return t.slack_mm > 0.0 &&
+         (t.edges[i] == EdgeShape::Convex || t.edges[i] == EdgeShape::Concave) &&
+         is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
+}
 
 TrianglePoint closest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners,
                                   const Eigen::Vector3d& p) {
@@ -221,30 +244,13 @@ Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p) {
   return face.reversed ? Eigen::Vector3d(-gradient) : gradient;
 }
 
-FacePoint nearest_on_patch(const CollisionModel& model, const ModelTriangle& t,
+FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p) {
-  const Face& face = model.face(t.face);
-  if (t.slack_mm == 0.0) {
-    const TrianglePoint q = closest_on_triangle(t.corners, p);
-    if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
-    return nearest_on_rim_of_patch(model, t, q, p);
+  FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
+  if (result.place == FacePoint::Place::Face && overhangs_rim(model, index, result.point)) {
+    result.distance_squared_mm2 = std::numeric_limits<double>::infinity();
   }
-  if (is_plane(face.surface)) {
-    const Eigen::Vector3d c = p - t.normal * t.normal.dot(p - t.corners[0]);
-    const Footing footing = footing_on_plane(model, t, c);
-    if (footing == Footing::Inside) return at(c, p, FacePoint::Place::Face);
-    TrianglePoint q = closest_on_triangle(t.corners, p);
-    if (footing == Footing::Overhang && q.region == 0) {
-      // The rim itself belongs to the curved face beyond it, which answers for it.
-      return {c, std::numeric_limits<double>::infinity(), FacePoint::Place::Face};
-    }
-    return nearest_on_rim_of_patch(model, t, q, p);
-  }
-  const Eigen::Vector3d c = closest_point(face.surface, p);
-  if (foot_is_over(t, face, c)) return at(c, p, FacePoint::Place::Face);
-  TrianglePoint q = closest_on_triangle(t.corners, p);
-  if (q.region == 0) return at(closest_point(face.surface, q.point), p, FacePoint::Place::Face);
-  return nearest_on_rim_of_patch(model, t, q, p);
+  return result;
 }
 
 }  // namespace dowel

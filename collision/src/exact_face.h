@@ -29,6 +29,9 @@ inline bool is_exact(const Face& face) {
   return !std::holds_alternative<OtherSurface>(face.surface);
 }
 
+/// True where edge `i` is the chord of a curve in which two exact faces meet.
+bool is_chord(const CollisionModel& model, const ModelTriangle& triangle, std::size_t i);
+
 /// A place of the exact boundary behind one facet that is a candidate for the nearest to some
 /// point.
 struct FacePoint {
@@ -37,9 +40,11 @@ struct FacePoint {
   enum class Place : std::uint8_t { Face, ConvexRim, ConcaveRim, Corner } place = Place::Face;
 };
 
-/// Nearest place to `p` of the exact face patch behind `triangle`. Always a place of the boundary,
-/// up to terms of second order in the facet error; the smallest over all triangles is the distance.
-FacePoint nearest_on_patch(const CollisionModel& model, const ModelTriangle& triangle,
+/// Nearest place to `p` of the exact face patch behind triangle `index`; at infinite distance where
+/// only its overhang over a rim comes near (the face beyond that rim answers for it). Always a
+/// place of the boundary, up to terms of second order in the facet error; the smallest over all
+/// triangles is the distance.
+FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p);
 
 }  // namespace dowel

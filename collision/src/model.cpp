@@ -86,16 +86,21 @@ EdgeShape edge_shape(const FacetedSolid& solid, std::uint32_t t, std::uint32_t b
   return height < 0.0 ? EdgeShape::Convex : EdgeShape::Concave;
 }
 
-/// How far the exact rim stands off the middle of edge `i`.
-double rim_error_mm(const Face& face, const Face& beyond, const ModelTriangle& t, std::size_t i) {
+/// From the middle of edge `i` to the exact rim.
+Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTriangle& t,
+                           std::size_t i) {
   const Eigen::Vector3d middle = 0.5 * (t.corners[i] + t.corners[(i + 1) % 3]);
   const bool both = is_exact(face) && is_exact(beyond);
-  if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return 0.0;
+  if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return {0.0, 0.0, 0.0};
   Eigen::Vector3d x = middle;
   for (int step = 0; step < 8; ++step) {
     x = closest_point(face.surface, closest_point(beyond.surface, x));
   }
-  return kRimAllowance * (x - middle).norm();
+  return x - middle;
+}
+
+bool overlap(const BvhNode& node, const Aabb& box) {
+  return (node.min.array() <= box.max.array()).all() && (box.min.array() <= node.max.array()).all();
 }
 
 }  // namespace
@@ -106,6 +111,7 @@ CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
   if (const auto defect = find_defect(*solid_)) throw Error(ErrorCode::FileMalformed, *defect);
   build_triangles(hole_faces);
   build_tree();
+  find_overhangs();
   find_inner_points();
 }
 
@@ -136,8 +142,9 @@ void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) 
       t.neighbours[edge] = solid.face_of[beyond];
       t.edges[edge] = edge_shape(solid, i, beyond, t.normal, edge);
       if (t.edges[edge] == EdgeShape::Convex || t.edges[edge] == EdgeShape::Concave) {
-        t.slack_mm =
-            std::max(t.slack_mm, rim_error_mm(face, solid.faces[t.neighbours[edge]], t, edge));
+        const double rim_error_mm =
+            rim_offset(face, solid.faces[t.neighbours[edge]], t, edge).norm();
+        t.slack_mm = std::max(t.slack_mm, kRimAllowance * rim_error_mm);
       }
     }
     max_slack_mm_ = std::max(max_slack_mm_, t.slack_mm);
@@ -222,6 +229,47 @@ void CollisionModel::build_tree() {
   component_of_ = std::move(sorted_components);
 }
 
+void CollisionModel::find_overhangs() {
+  // Chords whose arc bulges over their own face, each with the facets of it that it reaches.
+  std::vector<std::pair<std::uint32_t, Chord>> found;
+  std::vector<std::uint32_t> stack;
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    const ModelTriangle& t = triangles_[i];
+    for (std::uint32_t edge = 0; edge < 3; ++edge) {
+      if (!is_chord(*this, t, edge)) continue;
+      const Eigen::Vector3d offset = rim_offset(face(t.face), face(t.neighbours[edge]), t, edge);
+      const Eigen::Vector3d& a = t.corners[edge];
+      const Eigen::Vector3d& b = t.corners[(edge + 1) % 3];
+      if ((b - a).cross(t.normal).dot(offset) >= 0.0) continue;
+      Aabb box;
+      for (const Eigen::Vector3d& end : {a, b}) {
+        box.extend(end);
+        box.extend(end + kRimAllowance * offset);
+      }
+      stack.assign(1, 0);
+      while (!stack.empty()) {
+        const BvhNode& node = nodes_[stack.back()];
+        stack.pop_back();
+        if (!overlap(node, box)) continue;
+        if (!node.is_leaf()) {
+          stack.insert(stack.end(), {node.first, node.first + 1});
+          continue;
+        }
+        for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
+          if (triangles_[k].face == t.face) found.emplace_back(k, Chord{i, edge});
+        }
+      }
+    }
+  }
+  std::ranges::stable_sort(found, {}, [](const auto& entry) { return entry.first; });
+  overhang_begin_.assign(triangles_.size() + 1, 0);
+  for (const auto& [triangle, chord] : found) {
+    ++overhang_begin_[triangle + 1];
+    overhangs_.push_back(chord);
+  }
+  std::partial_sum(overhang_begin_.begin(), overhang_begin_.end(), overhang_begin_.begin());
+}
+
 void CollisionModel::find_inner_points() {
   // From some facets of each component a step inward: the middle of the way to the far side is a
   // start, pushed away from the nearest boundary as long as that makes it deeper.
@@ -269,6 +317,8 @@ std::size_t CollisionModel::memory_bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(BvhNode) +
          triangles_.capacity() * sizeof(ModelTriangle) +
          component_of_.capacity() * sizeof(component_of_[0]) +
+         overhangs_.capacity() * sizeof(Chord) +
+         overhang_begin_.capacity() * sizeof(overhang_begin_[0]) +
          inner_points_.capacity() * sizeof(InnerPoint);
 }
 

@@ -91,7 +91,7 @@ struct Best {
 
   Best() { place.distance_squared_mm2 = std::numeric_limits<double>::infinity(); }
   void look_at(const CollisionModel& model, std::uint32_t t, const Eigen::Vector3d& p) {
-    const FacePoint candidate = nearest_on_patch(model, model.triangles()[t], p);
+    const FacePoint candidate = nearest_on_patch(model, t, p);
     if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
       place = candidate;
       triangle = t;

@@ -56,15 +56,22 @@ TEST_CASE("the distance from a coarse cylinder is that of the exact cylinder", "
   CHECK(inside > 4000);
 }
 
-TEST_CASE("near a hole the distance is that of the exact bore, also under its overhanging rim",
+TEST_CASE("near any hole the distance is that of the exact bore, also under its overhanging rim",
           "[property]") {
-  const CollisionModel model = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 26));
+  // Several holes: facets of the plate then meet a rim at a vertex, or only across another facet.
+  const auto segments = GENERATE(9U, 24U, 64U);
+  CAPTURE(segments);
+  const auto holes = testing::hole_grid(5, 3, 40, 6.0);
+  const CollisionModel model = model_of(testing::plate_with_holes({240, 160, 20}, holes, segments));
   testing::RandomGeometry random(6);
   int in_air = 0;
   for (int i = 0; i < 20'000; ++i) {
+    const testing::DrilledHole& hole =
+        holes[random.index(static_cast<std::uint32_t>(holes.size()))];
     const double angle = random.uniform(0, 7);
     const double r = 6.0 + random.uniform(-0.3, 0.3);
-    const Eigen::Vector3d p(r * std::cos(angle), r * std::sin(angle), random.uniform(-0.3, 20.3));
+    const double z = i % 2 == 0 ? 20.0 - random.uniform(-0.02, 0.02) : random.uniform(-0.3, 20.3);
+    const Eigen::Vector3d p(hole.x + r * std::cos(angle), hole.y + r * std::sin(angle), z);
     // Near the bore the plate is the outside of a cylinder between two planes.
     const double radial = 6.0 - r;
     const double axial = std::max(-p.z(), p.z() - 20.0);
@@ -72,6 +79,7 @@ TEST_CASE("near a hole the distance is that of the exact bore, also under its ov
         radial > 0 && axial > 0 ? std::hypot(radial, axial) : std::max(radial, axial);
     const double measured = signed_distance(model.nearest(p));
     in_air += truth > 0 ? 1 : 0;
+    CAPTURE(i, r, angle, z);
     REQUIRE(measured == Approx(truth).margin(1e-9));
   }
   CHECK(in_air > 5000);

@@ -38,6 +38,12 @@ struct ModelTriangle {
   double slack_mm = 0.0;
 };
 
+/// A straight edge of a facet that stands for a curved rim.
+struct Chord {
+  std::uint32_t triangle = 0;
+  std::uint32_t edge = 0;
+};
+
 /// Place on the exact boundary that is nearest to some point.
 struct NearestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -64,6 +70,13 @@ class CollisionModel {
   std::span<const BvhNode> nodes() const noexcept { return nodes_; }
   std::span<const ModelTriangle> triangles() const noexcept { return triangles_; }
   const Face& face(std::uint32_t index) const { return solid_->faces[index]; }
+
+  /// Chords of the same face between which and their arcs a part of triangle `index` may lie: there
+  /// it overhangs the exact face. Among them can be chords of other triangles.
+  std::span<const Chord> overhangs(std::uint32_t index) const noexcept {
+    return std::span(overhangs_)
+        .subspan(overhang_begin_[index], overhang_begin_[index + 1] - overhang_begin_[index]);
+  }
 
   /// Nearest place of the boundary. Inside or outside follows from the side of the nearest face, or
   /// from the edge's shape; at a corner from the parity of a ray.
@@ -96,12 +109,15 @@ class CollisionModel {
  private:
   void build_triangles(std::span<const std::uint32_t> hole_faces);
   void build_tree();
+  void find_overhangs();
   void find_inner_points();
 
   std::shared_ptr<const FacetedSolid> solid_;
   std::vector<BvhNode> nodes_;
   std::vector<ModelTriangle> triangles_;
   std::vector<std::uint32_t> component_of_;  // by triangle
+  std::vector<Chord> overhangs_;             // by triangle, from overhang_begin_ on
+  std::vector<std::uint32_t> overhang_begin_;
   std::vector<InnerPoint> inner_points_;
   double max_slack_mm_ = 0.0;
   double max_unknown_mm_ = 0.0;
