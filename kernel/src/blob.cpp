@@ -29,11 +29,12 @@ constexpr std::string_view kMagic{"dwlsolid", 8};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kChecked = kMagic.size() + 4;  // where the checksum starts
 constexpr std::size_t kHeaderSize = kChecked + 4 + 8;
-constexpr std::size_t kCountsSize = 5 * 4;
-constexpr std::size_t kVertexSize = 3 * 8;
-constexpr std::size_t kTriangleSize = 4 * 4;  // with its face index
+constexpr std::size_t kCountsSize = std::size_t{5} * 4;
+constexpr std::size_t kVertexSize = std::size_t{3} * 8;
+constexpr std::size_t kTriangleSize = std::size_t{4} * 4;  // with its face index
 constexpr std::size_t kMinFaceSize = 1 + 1 + 8 + 8 + 4;
-constexpr std::size_t kMaxFaceSize = kMinFaceSize + 8 * 8;  // with the parameters of a torus
+constexpr std::size_t kMaxFaceSize =
+    kMinFaceSize + std::size_t{8} * 8;  // with the parameters of a torus
 constexpr std::size_t kEdgeSize = 2 * 4 + 3 + 8 + 4 * kVertexSize + 8;
 
 class Writer {
@@ -55,7 +56,7 @@ class Writer {
  private:
   template <class Unsigned>
   void unsigned_value(Unsigned value) {
-    std::array<std::byte, sizeof(Unsigned)> packed;
+    std::array<std::byte, sizeof(Unsigned)> packed{};
     for (std::size_t i = 0; i < packed.size(); ++i) {
       packed[i] = static_cast<std::byte>((value >> (8 * i)) & 0xFFU);
     }

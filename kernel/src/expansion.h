@@ -54,7 +54,7 @@ class Expansion {
   }
 
  private:
-  std::array<double, kCapacity> terms_;
+  std::array<double, kCapacity> terms_{};
   std::size_t size_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "disjoint_sets.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/predicates.h"
 
@@ -19,14 +20,6 @@ struct HalfEdge {
     return (static_cast<std::uint64_t>(std::min(from, to)) << 32U) | std::max(from, to);
   }
 };
-
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
 
 std::uint32_t opposite_corner(const Triangle& t, const HalfEdge& edge) {
   for (const std::uint32_t v : t) {

@@ -243,7 +243,8 @@ Candidate refined(const Polyhedron& body, Candidate box) {
 /// Tilts the direction of one face of the box, by less and less, as long as the box shrinks.
 /// Compass search: the volume is smooth only piecewise.
 Candidate tilted(const Polyhedron& body, Candidate box) {
-  for (double step_rad = kFirstTilt_rad; step_rad > kLastTilt_rad; step_rad *= 0.5) {
+  double step_rad = kFirstTilt_rad;
+  while (step_rad > kLastTilt_rad) {
     bool is_improving = true;
     for (int round = 0; is_improving && round < kMaxRefinements; ++round) {
       is_improving = false;
@@ -260,6 +261,7 @@ Candidate tilted(const Polyhedron& body, Candidate box) {
         }
       }
     }
+    step_rad *= 0.5;
   }
   return box;
 }
@@ -286,6 +288,7 @@ Polyhedron coarse(const Polyhedron& body) {
   std::sort(extremes.begin(), extremes.end());
   extremes.erase(std::unique(extremes.begin(), extremes.end()), extremes.end());
   std::vector<Eigen::Vector3d> points;
+  points.reserve(extremes.size());
   for (const std::uint32_t i : extremes) points.push_back(body.points[i]);
   const ConvexHull hull = convex_hull(points);
   return hull.triangles.empty() ? body
@@ -356,6 +359,7 @@ Eigen::Matrix3d flat_axes(const std::vector<Eigen::Vector3d>& points) {
     return axes;
   }
   std::vector<Eigen::Vector3d> about_start;
+  about_start.reserve(points.size());
   for (const Eigen::Vector3d& p : points) about_start.push_back(p - start);
   return best_box_across(normal.normalized(), 1.0, about_start).axes;
 }

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "disjoint_sets.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/mesh_defect.h"
 #include "mesh_edges.h"
@@ -20,14 +21,6 @@ struct Component {
   Aabb bounds;
   bool to_turn = false;
 };
-
-std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) {
-    parent[i] = parent[parent[i]];
-    i = parent[i];
-  }
-  return i;
-}
 
 std::vector<Component> components_of(const FacetedSolid& solid) {
   const std::vector<EdgeUse> uses = sorted_edge_uses(solid);
