@@ -198,6 +198,7 @@ Steps steps_from(const ProjectDatabase& database, const ProjectState& state, Jou
 
 std::vector<std::string> commands_of(const std::vector<JournalRecord>& records) {
   std::vector<std::string> commands;
+  commands.reserve(records.size());
   for (const JournalRecord& record : records) commands.push_back(record.command);
   return commands;
 }

@@ -45,7 +45,11 @@ const Feature* bottom_of(const Element& element) {
         face.direction.head<2>().norm() > kCoaxial_rad) {
       continue;
     }
-    const double below_mm = best == nullptr ? 1.0 : best->origin.z() - face.origin.z();
+    if (best == nullptr) {
+      best = &face;
+      continue;
+    }
+    const double below_mm = best->origin.z() - face.origin.z();
     if (below_mm > kCoincident_mm ||
         (below_mm > -kCoincident_mm && face.area_mm2 > best->area_mm2)) {
       best = &face;

@@ -63,6 +63,7 @@ std::vector<std::string> similar_words(std::string_view word,
   std::ranges::sort(found);
   if (found.size() > count) found.resize(count);
   std::vector<std::string> result;
+  result.reserve(found.size());
   for (const auto& [bad, i] : found) result.push_back(candidates[i]);
   return result;
 }

@@ -214,6 +214,7 @@ std::vector<HoleGrid> grids_at_angle(std::vector<Spot> spots, double angle_rad) 
   for (std::size_t i = 0; i < spots.size(); ++i) order.emplace_back(row[i], column[i], i);
   std::sort(order.begin(), order.end());
   std::vector<Spot> left;
+  left.reserve(order.size());
   for (const auto& [r, c, i] : order) left.push_back(spots[i]);
 
   std::vector<HoleGrid> grids;
@@ -291,6 +292,7 @@ std::vector<HoleGrid> find_hole_grids(const std::vector<Feature>& holes) {
     if (group.size() < kFewestHoles) continue;
     const ViewFrame view = view_frame(-holes[group.front()].direction);
     std::vector<Spot> spots;
+    spots.reserve(group.size());
     for (const std::size_t i : group) {
       spots.push_back({i, {view.right.dot(holes[i].origin), view.up.dot(holes[i].origin)}});
     }
@@ -299,6 +301,7 @@ std::vector<HoleGrid> find_hole_grids(const std::vector<Feature>& holes) {
     for (HoleGrid& grid : found) grids.push_back(std::move(grid));
   }
   std::vector<double> diameters_mm;
+  diameters_mm.reserve(grids.size());
   for (const HoleGrid& grid : grids) {
     diameters_mm.push_back(holes[grid.places.front().hole].diameter_mm);
   }
@@ -310,6 +313,7 @@ std::vector<HoleGrid> find_hole_grids(const std::vector<Feature>& holes) {
   }
   std::sort(order.begin(), order.end());
   std::vector<HoleGrid> sorted;
+  sorted.reserve(order.size());
   for (const auto& [size, rank, i] : order) sorted.push_back(std::move(grids[i]));
   return sorted;
 }

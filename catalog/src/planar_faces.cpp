@@ -165,6 +165,7 @@ std::vector<Feature> find_planar_faces(const FacetedSolid& solid,
   for (const std::vector<std::size_t>& members : sets.sets()) {
     if (!is_wanted(members.front())) continue;
     std::vector<std::uint32_t> faces;
+    faces.reserve(members.size());
     for (const std::size_t face : members) faces.push_back(static_cast<std::uint32_t>(face));
     result.push_back(make_face(solid, graph, std::move(faces)));
   }

@@ -219,6 +219,7 @@ double turn_covered(const FacetedSolid& solid, const std::vector<FaceNode>& grap
 std::vector<Band> bands_about(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
                               const std::vector<AxialFace>& group, const Axis& axis) {
   std::vector<Profile> profiles;
+  profiles.reserve(group.size());
   for (const AxialFace& face : group) {
     profiles.push_back(profile_of(solid, graph, face.face, axis));
   }

@@ -260,6 +260,7 @@ std::vector<Element> search(const Catalog& catalog, const SearchQuery& query) {
   // Names came sorted, and stay so among equals.
   std::ranges::stable_sort(found, {}, &std::pair<int, Element>::first);
   std::vector<Element> elements;
+  elements.reserve(found.size());
   for (auto& entry : found) elements.push_back(std::move(entry.second));
   return elements;
 }

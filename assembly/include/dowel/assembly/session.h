@@ -28,10 +28,10 @@ struct MoveReport {
   std::string instance;
   bool refused = false;  ///< taken back: the instance is where it was (or was not placed at all)
   bool checked = false;  ///< false in CheckMode::Off; then the verdict means nothing
-  /// Where the instance is now; of a refused placement, where it was to be.
-  Pose X_WI;
   Verdict verdict = Verdict::Clear;  ///< worst of `touches`
   std::vector<Touch> touches;        ///< by order of placing
+  /// Where the instance is now; of a refused placement, where it was to be.
+  Pose X_WI;
   /// Moves: how much of the way is free of interference, in [0, 1], and the last free pose.
   double free_share = 1.0;
   Pose X_WI_free;
