@@ -150,10 +150,14 @@ void Canvas::draw_line(const Vector3d& a, const Vector3d& b, std::uint8_t pen) {
   } else if (a.y() < top_ || a.y() >= bottom_) {
     return;
   }
+  constexpr double kLongest = 0x1p53;  // beyond, a step is no whole number
+  if (!(from <= to) || !(length < kLongest)) return;
   // Whole steps from the start of the line, so that bands meet without a seam.
   const double steps = std::max(1.0, std::ceil(length));
-  for (double i = std::ceil(from * steps); i <= to * steps; i += 1.0) {
-    const Vector3d p = a + i / steps * along;
+  const auto first = static_cast<std::int64_t>(std::ceil(from * steps));
+  const auto last = static_cast<std::int64_t>(std::floor(to * steps));
+  for (std::int64_t i = first; i <= last; ++i) {
+    const Vector3d p = a + static_cast<double>(i) / steps * along;
     if (!(p.x() >= 0.0 && p.x() < width_ && p.y() >= top_ && p.y() < bottom_)) continue;
     const int x = static_cast<int>(std::floor(p.x()));
     const int y = static_cast<int>(std::floor(p.y()));
@@ -187,7 +191,7 @@ void Canvas::draw_outlines(std::span<const std::uint8_t> pen_of_owner) {
 
 std::vector<std::uint8_t> Canvas::pixels(std::span<const Linear> pens) const {
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(samples_.size() / (kSamples * kSamples) * 3);
+  bytes.reserve(samples_.size() / kSamples / kSamples * 3);
   for (int row = top_ + kRim; row < bottom_ - kRim; row += kSamples) {
     for (int column = 0; column < width_; column += kSamples) {
       Linear sum = Linear::Zero();

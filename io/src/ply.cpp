@@ -162,7 +162,10 @@ void read_list(const Property& property, Numbers& numbers, std::vector<std::uint
   items.clear();
   const double count = numbers.next(property.count_type);
   if (!(count >= 0.0) || count != std::floor(count)) fail("a list of a negative or broken length");
-  for (double i = 0.0; i < count; ++i) {
+  // No file is that long; reading on past its end fails.
+  constexpr double kLongest = 0x1p53;
+  const auto length = static_cast<std::uint64_t>(std::min(count, kLongest));
+  for (std::uint64_t i = 0; i < length; ++i) {
     const double item = numbers.next(property.type);
     constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
     const bool is_index = item >= 0.0 && item < kNoVertex && item == std::floor(item);

@@ -41,7 +41,8 @@ struct Node {
       if (std::ranges::find(known_keys, key) != known_keys.end()) continue;
       std::string known;
       for (const std::string_view name : known_keys) {
-        known += (known.empty() ? "" : ", ") + std::string(name);
+        if (!known.empty()) known += ", ";
+        known += name;
       }
       fail("unknown key \"" + key + "\", expected one of: " + known);
     }

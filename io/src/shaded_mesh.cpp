@@ -64,7 +64,7 @@ class Shader {
     find_facet_normals();
     for_each_fan([this](std::span<const Corner> fan) { find_corner_normals(fan); });
     for_each_fan([this](std::span<const Corner> fan) { share_corners(fan); });
-    for (std::uint32_t t = 0; t < solid_.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < solid_.triangles.size(); ++t) {
       if (is_drawable(solid_.triangles[t])) {
         mesh_.triangles.push_back({index_[3 * t], index_[3 * t + 1], index_[3 * t + 2]});
       }
@@ -132,7 +132,7 @@ class Shader {
         sum += candidate;
       }
     }
-    const Vector3d mean = unit_or_zero(sum);
+    Vector3d mean = unit_or_zero(sum);
     if (!mean.isZero(0.0)) return mean;
     return own.isZero(0.0) ? Vector3d(Vector3d::UnitZ()) : own;
   }

@@ -293,6 +293,7 @@ int poll_timeout_ms(const std::vector<std::unique_ptr<Child>>& children) {
 void collect(std::vector<std::unique_ptr<Child>>& children,
              std::map<std::size_t, WorkerOutcome>& outcomes) {
   std::vector<pollfd> polled;
+  polled.reserve(children.size());
   for (const auto& child : children) polled.push_back({child->pipe(), POLLIN, 0});
   const int ready = ::poll(polled.data(), polled.size(), poll_timeout_ms(children));
   for (std::size_t i = children.size(); i-- > 0;) {
