@@ -67,6 +67,9 @@ struct BuildArguments {
   bool json = false;
 };
 
+/// Of one file, as text.
+constexpr std::size_t kShownWarnings = 3;
+
 bool has_elements(const BuiltFile& file) {
   return file.status == BuildStatus::Ok || file.status == BuildStatus::Unchanged;
 }
@@ -80,6 +83,7 @@ Json to_json(const BuiltFile& file) {
   } else {
     json["reason"] = file.reason;
   }
+  if (!file.warnings.empty()) json["warnings"] = file.warnings;
   json["seconds"] = file.seconds;
   return json;
 }
@@ -95,7 +99,17 @@ std::string to_text(const BuiltFile& file) {
     what.clear();
     for (const std::string& element : file.elements) what += (what.empty() ? "" : ", ") + element;
   }
-  return coloured(status, colour) + "  " + printable(file.file) + ": " + printable(what);
+  std::string text =
+      coloured(status, colour) + "  " + printable(file.file) + ": " + printable(what);
+  const std::size_t shown = std::min(file.warnings.size(), kShownWarnings);
+  for (std::size_t i = 0; i < shown; ++i) {
+    text += "\n           " + coloured("warning", kYellow) + " " + printable(file.warnings[i]);
+  }
+  if (shown < file.warnings.size()) {
+    text += "\n           and " + counted(file.warnings.size() - shown, "more warning") +
+            "; --json tells all";
+  }
+  return text;
 }
 
 std::size_t count(const std::vector<BuiltFile>& files, BuildStatus status) {

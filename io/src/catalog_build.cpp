@@ -137,6 +137,7 @@ struct Job {
   SourceRecord source;
   std::string licence;
   bool must_read = false;
+  bool has_elements = false;  ///< in the catalogue, from an earlier build
   BuiltFile built;
 };
 
@@ -205,6 +206,7 @@ Job Build::prepare(Input&& input) {
   }
   const std::optional<SourceRecord> known = catalog_.source(job.source.path);
   if (known && !known->elements.empty()) {
+    job.has_elements = true;
     const std::optional<Element> element = catalog_.find(known->elements.front());
     if (element) job.licence = element->licence;
   }
@@ -231,6 +233,7 @@ bool Build::store(Job& job, ImportResult&& result) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<ElementRecord> records;
   job.built.reason = result.reason;
+  job.built.warnings = std::move(result.warnings);
   switch (result.status) {
     case ImportResult::Status::Ok:
       job.built.status = BuildStatus::Ok;
@@ -254,9 +257,14 @@ bool Build::store(Job& job, ImportResult&& result) {
       job.built.reason = error.what();
     }
   }
-  job.source.status = to_string(job.built.status);
-  job.source.reason = job.built.reason;
-  job.built.elements = catalog_.put(job.source, records);
+  if (job.built.status == BuildStatus::Failed && job.has_elements) {
+    // Half a copy of a file must not take away the elements of the whole one.
+    job.built.reason += "; the catalogue keeps what this file gave before";
+  } else {
+    job.source.status = to_string(job.built.status);
+    job.source.reason = job.built.reason;
+    job.built.elements = catalog_.put(job.source, records);
+  }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   job.built.seconds = result.seconds + taken.count();
   return true;
@@ -297,13 +305,27 @@ std::vector<BuiltFile> build_catalog(std::span<const std::filesystem::path> path
   if (!has_file) {
     std::vector<BuiltFile> report;
     for (const Input& input : inputs) {
-      report.push_back({input.path.string(), BuildStatus::Failed, input.problem, {}, 0.0});
+      BuiltFile missing;
+      missing.file = input.path.string();
+      missing.reason = input.problem;
+      report.push_back(std::move(missing));
       if (on_file && !on_file(report.back(), report.size(), inputs.size())) break;
     }
     return report;
   }
-  Catalog catalog(catalog_file, Catalog::Access::ReadWrite);
-  return Build(catalog, options, on_file, std::move(inputs)).run();
+  std::error_code ignored;
+  const bool is_new = !std::filesystem::exists(catalog_file, ignored);
+  std::vector<BuiltFile> report;
+  {
+    Catalog catalog(catalog_file, Catalog::Access::ReadWrite);
+    report = Build(catalog, options, on_file, std::move(inputs)).run();
+  }
+  if (is_new && std::ranges::all_of(report, [](const BuiltFile& file) {
+        return file.status == BuildStatus::Failed;
+      })) {
+    std::filesystem::remove(catalog_file, ignored);
+  }
+  return report;
 }
 
 }  // namespace dowel

@@ -103,8 +103,7 @@ ImportResult import_step(const std::filesystem::path& file, const ImportOptions&
   result.warnings = std::move(content.warnings);
   if (content.parts.empty()) {
     result.status = ImportResult::Status::Empty;
-    result.reason =
-        (content.leftovers.empty() ? "no shape" : content.leftovers) + std::string(", no solid");
+    result.reason = content.leftovers.empty() ? "no shape" : content.leftovers + ", no solid";
     return result;
   }
   std::vector<std::string> found;

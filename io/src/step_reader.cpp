@@ -46,6 +46,18 @@ namespace {
 
 constexpr std::size_t kMostWarnings = 20;
 
+/// A message of OpenCascade without its frame of stars and the names of its own parts.
+std::string plain_message(const TCollection_AsciiString& message) {
+  std::string text = clean_text({message.ToCString(), static_cast<std::size_t>(message.Length())});
+  constexpr const char* kFrame = "* ";
+  text.erase(0, std::min(text.find_first_not_of(kFrame), text.size()));
+  text.erase(text.find_last_not_of(kFrame) + 1);
+  for (const std::string_view prefix : {"ERR StepFile : ", "Undefined Parsing: "}) {
+    if (text.starts_with(prefix)) text.erase(0, prefix.size());
+  }
+  return text;
+}
+
 /// Keeps what OpenCascade would print. Its default printer writes to standard output.
 class CollectingPrinter : public Message_Printer {
   DEFINE_STANDARD_RTTI_INLINE(CollectingPrinter, Message_Printer)
@@ -55,8 +67,7 @@ class CollectingPrinter : public Message_Printer {
  protected:
   void send(const TCollection_AsciiString& text, Message_Gravity gravity) const override {
     if (gravity < Message_Warning || lines_.size() >= kMostWarnings) return;
-    const std::string line =
-        clean_text({text.ToCString(), static_cast<std::size_t>(text.Length())});
+    const std::string line = plain_message(text);
     if (!line.empty()) lines_.push_back(line);
   }
 
@@ -144,9 +155,9 @@ std::vector<std::string> failed_checks(STEPCAFControl_Reader& reader) {
   std::vector<std::string> found;
   const auto model = reader.Reader().StepModel();
   const auto session = reader.Reader().WS();
-  const auto gather = [&](Interface_CheckIterator checks) {
+  const auto gather = [&](Interface_CheckIterator&& checks) {
     for (checks.Start(); checks.More() && found.size() < kMostWarnings; checks.Next()) {
-      const auto check = checks.Value();
+      const auto& check = checks.Value();
       if (!check->HasFailed()) continue;
       const int number = checks.Number();
       const std::string where = number > 0
@@ -348,6 +359,7 @@ StepContent read_step(const std::filesystem::path& file, bool whole_file,
                       const std::function<void(WorkerStage)>& report) {
   report(WorkerStage::Read);
   const std::string text = read_file(file);
+  if (text.empty()) throw Error(ErrorCode::FileMalformed, "is empty, expected a STEP file");
   constexpr std::size_t kHeader = 4096;
   if (std::string_view(text).substr(0, kHeader).find("ISO-10303-21") == std::string_view::npos) {
     throw Error(ErrorCode::FileMalformed,

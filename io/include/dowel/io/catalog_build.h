@@ -38,7 +38,9 @@ struct BuiltFile {
   /// catalogue knows the file by it.
   std::string file;
   BuildStatus status = BuildStatus::Failed;
-  std::string reason;                 ///< why Empty or Failed
+  std::string reason;  ///< why Empty or Failed
+  /// What the reader found wrong and went on past; an Unchanged file is not read and has none.
+  std::vector<std::string> warnings;
   std::vector<std::string> elements;  ///< their names in the catalogue
   double seconds = 0.0;               ///< to read it and to recognise its features
 };
@@ -49,9 +51,10 @@ using BuildCallback =
 
 /// Reads the elements of `paths` (files, and folders with all in them that dowel reads) into the
 /// catalogue at `catalog_file`, which is made where it is missing. One transaction a file: what a
-/// file gave before is replaced. A file that fails is an answer, as is a path that is missing; both
-/// are in the report, and the rest is read. Files that were Empty or Failed before are not tried
-/// again until they change, unless forced. Where no path leads to a file, nothing is made.
+/// file gave before is replaced, but kept where the file fails now. A file that fails is an answer,
+/// as is a path that is missing; both are in the report, and the rest is read. Files that were
+/// Empty or Failed before are not tried again until they change, unless forced. Where all that is
+/// read fails, no catalogue is made.
 ///
 /// The report is sorted within a folder and otherwise in the order of `paths`; a file that several
 /// paths lead to is read once. The same files give the same catalogue for any number of jobs.
