@@ -84,7 +84,7 @@ class ElementLoader {
       if (!body.source.empty()) files.push_back(body.source);
     }
     std::ranges::sort(files);
-    files.erase(std::ranges::unique(files).begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
     import_files(files, options_, std::max(1U, std::thread::hardware_concurrency()),
                  [&](std::size_t i, ImportResult&& import) {
                    by_file_[files[i]] =
@@ -211,7 +211,8 @@ class Checker {
     placed_.clear();
     for (const Pose& X_UB : X_UB_) placed_.push_back(poses_[i] * X_UB);
     const Clock::time_point start = Clock::now();
-    report.pairs = scene_.check(moving_, placed_, options_);
+    const auto verdicts = scene_.check(moving_, placed_, options_);
+    report.pairs.assign(verdicts.begin(), verdicts.end());
     const double time_us = microseconds_since(start);
     report.verdict = worst(report.pairs);
     return time_us;

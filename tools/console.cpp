@@ -60,8 +60,8 @@ constexpr std::array kCommands{
     Command{"check", "", "Checks all pairs; exit code 1 where any interferes.", "check", true,
             run_check},
     Command{"export", "FILE.step|.glb|.html|.png|.csv|.dowel",
-            "Writes the assembly (STEP, GLB, page), the bill of materials or the commands as a "
-            "script.",
+            "Writes the assembly (STEP, GLB, 3D page, picture), the bill of materials or the "
+            "commands as a script.",
             "export fixture.step", true, run_export},
     Command{"history", "", "The commands that made the project; undone ones are marked.", "history",
             true, run_history},

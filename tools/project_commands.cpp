@@ -55,12 +55,17 @@ void add_run(CLI::App& app, int& exit_code) {
   run->add_flag("--times", options->how.times, "Tell how long each command took");
   run->callback([options, &exit_code] {
     const bool from_stdin = options->script == "-";
-    // Read before the project is touched: a missing script changes nothing.
-    std::istringstream text(from_stdin ? std::string() : read_file(options->script));
+    // Before the project is touched: a script that is missing or none changes nothing.
+    const std::string text = from_stdin ? std::string() : read_file(options->script);
+    if (!options->how.keep_going && !check_script(options->script, text, options->how)) {
+      exit_code = kBadInput;
+      return;
+    }
     Console console;
     prepare(console, *options, true);
+    std::istringstream lines(text);
     exit_code = from_stdin ? run_script(console, "<stdin>", std::cin, options->how)
-                           : run_script(console, options->script, text, options->how);
+                           : run_script(console, options->script, lines, options->how);
   });
 }
 

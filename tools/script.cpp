@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <istream>
+#include <sstream>
 
 #include "commands.h"
 #include "console_text.h"
@@ -21,30 +22,72 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The lines of a script one after the other, and errors told with their place.
+class ScriptLines {
+ public:
+  ScriptLines(std::string_view name, const ScriptOptions& options)
+      : name_(name), options_(options) {}
+
+  /// Number of the line that `next` split last, from 1.
+  std::size_t number() const { return number_; }
+  std::string name() const { return printable(name_); }
+
+  /// The words of `line`, which follows the one before. Throws CommandError.
+  std::vector<Word> next(std::string_view line) {
+    ++number_;
+    if (number_ == 1 && line.starts_with(kByteOrderMark)) {
+      line.remove_prefix(kByteOrderMark.size());
+    }
+    if (line.size() > kLongestLine) {
+      throw CommandError(ErrorCode::InvalidInput,
+                         "the line has " + std::to_string(line.size()) + " bytes, more than the " +
+                             std::to_string(kLongestLine) + " that a command may have",
+                         1);
+    }
+    return split_words(line);
+  }
+
+  void tell(std::size_t column, const char* message) const {
+    // Results that were printed before come first, also where both go to one file.
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s:%zu:%zu: error: %s\n", name().c_str(), number_, column,
+                 printable(message).c_str());
+  }
+
+  /// The same for the command `word`, also as JSON.
+  void tell(const CommandError& error, std::string_view word) const {
+    tell(error.column(), error.what());
+    if (!options_.json) return;
+    print_line(to_line({{"command", word},
+                        {"line", number_},
+                        {"column", error.column()},
+                        {"outcome", "error"},
+                        {"error", error.what()}}));
+  }
+
+ private:
+  std::string_view name_;
+  const ScriptOptions& options_;
+  std::size_t number_ = 0;
+};
+
 /// A run of a script: where it is and what has come of it.
 class ScriptRun {
  public:
   ScriptRun(Console& console, std::string_view name, const ScriptOptions& options)
-      : console_(console), name_(name), options_(options) {}
+      : console_(console), lines_(name, options), options_(options) {}
 
   /// False where the script is to end.
   bool run_line(std::string_view line) {
-    ++line_;
-    if (line_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     std::vector<Word> words;
     try {
-      if (line.size() > kLongestLine) {
-        throw CommandError(ErrorCode::InvalidInput,
-                           "the line has " + std::to_string(line.size()) +
-                               " bytes, more than the " + std::to_string(kLongestLine) +
-                               " that a command may have",
-                           1);
-      }
-      words = split_words(line);
+      words = lines_.next(line);
       if (words.empty()) return true;
       return run_words(words);
     } catch (const CommandError& error) {
-      return fail(error, words.empty() ? std::string_view() : words.front().text);
+      exit_code_ = kBadInput;
+      lines_.tell(error, words.empty() ? std::string_view() : words.front().text);
+      return go_on();
     }
   }
 
@@ -56,46 +99,26 @@ class ScriptRun {
     const auto start = std::chrono::steady_clock::now();
     const Reply reply = console_.run(words);
     ++done_;
-    print_reply(reply, words.front().text, line_, seconds_since(start), options_);
+    print_reply(reply, words.front().text, lines_.number(), seconds_since(start), options_);
     if (!reply.has_findings) return !reply.quits;
     exit_code_ = std::max<int>(exit_code_, kFindings);
     if (words.front().text != "expect") return true;
-    tell_error(words.front().column, "the command did not end as expected");
-    return go_on();
-  }
-
-  bool fail(const CommandError& error, std::string_view word) {
-    exit_code_ = kBadInput;
-    tell_error(error.column(), error.what());
-    if (options_.json) {
-      print_line(to_line({{"command", word},
-                          {"line", line_},
-                          {"column", error.column()},
-                          {"outcome", "error"},
-                          {"error", error.what()}}));
-    }
+    lines_.tell(words.front().column, "the command did not end as expected");
     return go_on();
   }
 
   bool go_on() const {
     if (options_.keep_going) return true;
-    const std::string before =
-        done_ == 0 ? std::string() : "; " + counted(done_, "command") + " before it stay done";
-    std::fprintf(stderr, "%s: stopped%s\n", printable(name_).c_str(), before.c_str());
+    const std::string before = done_ == 0 ? std::string()
+                                          : "; " + counted(done_, "command") + " before it " +
+                                                (done_ == 1 ? "stays" : "stay") + " done";
+    std::fprintf(stderr, "%s: stopped%s\n", lines_.name().c_str(), before.c_str());
     return false;
   }
 
-  void tell_error(std::size_t column, const char* message) const {
-    // Results that were printed before come first, also where both go to one file.
-    std::fflush(stdout);
-    std::fprintf(stderr, "%s:%zu:%zu: error: %s\n", printable(name_).c_str(), line_, column,
-                 printable(message).c_str());
-  }
-
   Console& console_;
-  std::string_view name_;
+  ScriptLines lines_;
   const ScriptOptions& options_;
-  std::size_t line_ = 0;
   std::size_t done_ = 0;
   int exit_code_ = kDone;
 };
@@ -120,6 +143,25 @@ void print_reply(const Reply& reply, std::string_view word, std::size_t line, do
     std::fprintf(stderr, "%8.3f ms  line %zu  %s\n", 1.0e3 * seconds, line,
                  printable(word).c_str());
   }
+}
+
+bool check_script(std::string_view name, const std::string& text, const ScriptOptions& options) {
+  ScriptLines lines(name, options);
+  std::istringstream script(text);
+  for (std::string line; std::getline(script, line);) {
+    std::vector<Word> words;
+    try {
+      words = lines.next(line);
+      if (words.empty()) continue;
+      command_for(words.front());
+      if (words.front().text == "quit") break;
+    } catch (const CommandError& error) {
+      lines.tell(error, words.empty() ? std::string_view() : words.front().text);
+      std::fprintf(stderr, "%s: nothing of it was run\n", lines.name().c_str());
+      return false;
+    }
+  }
+  return true;
 }
 
 int run_script(Console& console, std::string_view name, std::istream& script,

@@ -19,6 +19,10 @@ struct ScriptOptions {
 void print_reply(const Reply& reply, std::string_view word, std::size_t line, double seconds,
                  const ScriptOptions& options);
 
+/// True where each line of the script begins with a word of the console. Else tells, as
+/// `run_script` does, where and why not.
+bool check_script(std::string_view name, const std::string& text, const ScriptOptions& options);
+
 /// Runs the commands of `script` one after the other and returns the exit code. Errors are told on
 /// standard error as `name:line:column: error: ...`. Commands before an error stay done.
 int run_script(Console& console, std::string_view name, std::istream& script,

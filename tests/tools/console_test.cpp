@@ -186,7 +186,7 @@ TEST_CASE("a script stops at its first error and keeps what was done, or goes on
   const auto stopped = desk.script(text, {"--project", "a.dwp"});
   CHECK(stopped.exit_code == 3);
   CHECK(stopped.err.find("job.dowel:2:7: error: ") == 0);
-  CHECK(stopped.err.find("stopped; 1 command before it stay done") != std::string::npos);
+  CHECK(stopped.err.find("stopped; 1 command before it stays done") != std::string::npos);
   CHECK(Json::parse(desk.dowel({"list", "--project", "a.dwp", "--json"}).out)["instances"].size() ==
         1);
 
@@ -198,6 +198,22 @@ TEST_CASE("a script stops at its first error and keeps what was done, or goes on
   CHECK(lines[1]["column"] == 7);
   CHECK(Json::parse(desk.dowel({"list", "--project", "b.dwp", "--json"}).out)["instances"].size() ==
         2);
+}
+
+TEST_CASE("a script with a line that is no command changes nothing", "[fault]") {
+  const Desk desk;
+  const auto result =
+      desk.script("place T/block-40 as A\nplaec T/block-40\n", {"--project", "a.dwp"});
+  CHECK(result.exit_code == 3);
+  CHECK(result.out.empty());
+  CHECK(result.err ==
+        "job.dowel:2:1: error: unknown command \"plaec\"; did you mean place?\n"
+        "job.dowel: nothing of it was run\n");
+  CHECK_FALSE(std::filesystem::exists(desk.folder / "a.dwp"));
+  CHECK(desk.script("place T/block-40\nquit\nno more commands\n").exit_code == 0);
+  const auto gone_on = desk.script("plaec\nplace T/block-40\n", {"--keep-going"});
+  CHECK(gone_on.exit_code == 3);
+  CHECK(gone_on.out.find("BLOCK1: placed") == 0);
 }
 
 TEST_CASE("expect turns an outcome into a test") {
