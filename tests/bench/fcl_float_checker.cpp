@@ -1,0 +1,10 @@
+// The installed library has the double instances only; these take minutes to compile.
+#include "fcl_checker.h"
+
+namespace dowel::bench {
+
+std::unique_ptr<Checker> make_fcl_obb_float() {
+  return std::make_unique<FclChecker<fcl::OBB<float>>>();
+}
+
+}  // namespace dowel::bench

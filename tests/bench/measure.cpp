@@ -1,0 +1,195 @@
+#include "measure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include <malloc.h>
+
+namespace dowel::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double elapsed_us(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::micro>(end - start).count();
+}
+
+double quantile(std::vector<double> values, double q) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+std::vector<Pose> every(std::span<const Pose> poses, std::size_t stride) {
+  std::vector<Pose> result;
+  for (std::size_t i = 0; i < poses.size(); i += stride) result.push_back(poses[i]);
+  return result;
+}
+
+/// Hits are summed up and kept, so that no check is optimised away.
+volatile std::size_t g_hits = 0;
+
+void run_timed(Checker& checker, std::span<const Pose> poses, Run& run) {
+  Clock::time_point start = Clock::now();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Answer answer = checker.check(poses[i]);
+    const Clock::time_point end = Clock::now();
+    run.answers[i] = answer;
+    run.times_us[i] = std::min(run.times_us[i], elapsed_us(start, end));
+    start = Clock::now();
+  }
+}
+
+void run_batch(Checker& checker, std::span<const Pose> poses, Run& run) {
+  std::size_t hits = 0;
+  const Clock::time_point start = Clock::now();
+  for (const Pose& pose : poses) hits += checker.check(pose).hit ? 1U : 0U;
+  const Clock::time_point end = Clock::now();
+  g_hits = g_hits + hits;
+  run.batch_mean_us =
+      std::min(run.batch_mean_us, elapsed_us(start, end) / static_cast<double>(poses.size()));
+}
+
+std::size_t heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+}  // namespace
+
+Statistics statistics(std::span<const Run* const> runs) {
+  std::vector<double> times;
+  double sum = 0.0;
+  for (const Run* run : runs) {
+    times.insert(times.end(), run->times_us.begin(), run->times_us.end());
+    sum += run->batch_mean_us * static_cast<double>(run->times_us.size());
+  }
+  if (times.empty()) return {};
+  return {quantile(times, 0.5), quantile(times, 0.99), sum / static_cast<double>(times.size())};
+}
+
+Score score_interference(std::span<const Run* const> runs) {
+  Score score;
+  for (const Run* run : runs) {
+    for (std::size_t i = 0; i < run->answers.size(); ++i) {
+      if (!run->truth[i].verdict) continue;
+      ++score.known;
+      const bool truth = run->truth[i].verdict == Verdict::Interference;
+      if (run->answers[i].hit && !truth) ++score.false_yes;
+      if (!run->answers[i].hit && truth) ++score.false_no;
+    }
+  }
+  return score;
+}
+
+Score score_own_question(std::span<const Run* const> runs) {
+  Score score;
+  for (const Run* run : runs) {
+    for (std::size_t i = 0; i < run->answers.size(); ++i) {
+      const Answer& answer = run->answers[i];
+      const Truth& truth = run->truth[i];
+      if (answer.verdict && truth.verdict) {
+        ++score.known;
+        if (answer.verdict == truth.verdict) continue;
+        if (answer.verdict == Verdict::Interference) {
+          ++score.false_yes;
+        } else if (truth.verdict == Verdict::Interference) {
+          ++score.false_no;
+        } else {
+          ++score.other;
+        }
+      } else if (!answer.verdict && truth.surfaces_meet) {
+        ++score.known;
+        if (answer.hit && !*truth.surfaces_meet) ++score.false_yes;
+        if (!answer.hit && *truth.surfaces_meet) ++score.false_no;
+      }
+    }
+  }
+  return score;
+}
+
+std::vector<Run> run_scenario(const Scenario& scenario, std::span<const Method> methods,
+                              const Plan& plan) {
+  std::vector<std::unique_ptr<Checker>> checkers;
+  for (const Method& method : methods) {
+    checkers.push_back(method.make());
+    for (const Placed& placed : scenario.elements) checkers.back()->add(placed);
+    checkers.back()->set_moving(scenario.moving);
+    checkers.back()->finish();
+  }
+  std::vector<Run> runs;
+  std::vector<std::vector<Pose>> poses;
+  for (const MotionKind kind : plan.kinds) {
+    const Motion motion = motion_of(scenario, kind, plan.poses);
+    for (const Method& method : methods) {
+      poses.push_back(every(motion.poses, method.stride));
+      Run run;
+      run.scenario = scenario.name;
+      run.kind = kind;
+      run.method = method.name;
+      for (std::size_t i = 0; i < motion.truth.size(); i += method.stride) {
+        run.truth.push_back(motion.truth[i]);
+      }
+      run.answers.resize(run.truth.size());
+      run.times_us.assign(run.truth.size(), std::numeric_limits<double>::infinity());
+      run.batch_mean_us = std::numeric_limits<double>::infinity();
+      runs.push_back(std::move(run));
+    }
+  }
+  for (std::size_t round = 0; round < plan.rounds; ++round) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      Checker& checker = *checkers[i % methods.size()];
+      checker.take_counters();
+      run_timed(checker, poses[i], runs[i]);
+      runs[i].counters = checker.take_counters();
+      run_batch(checker, poses[i], runs[i]);
+    }
+  }
+  return runs;
+}
+
+ScalePoint run_scale(std::size_t count, const Method& method, const Plan& plan) {
+  const Scenario scenario = field_of_elements(count);
+  const std::vector<Pose> poses = field_path(scenario, plan.poses);
+  const std::unique_ptr<Checker> checker = method.make();
+  for (const Placed& placed : scenario.elements) checker->prepare(placed.element);
+  checker->prepare(scenario.moving);
+
+  ScalePoint point;
+  point.count = count;
+  point.method = method.name;
+  const std::size_t last_half = count / 2;
+  const std::size_t last_tenth = count - std::max<std::size_t>(count / 10, 1);
+  std::size_t bytes = heap_bytes();
+  double add_us = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == last_half) bytes = heap_bytes();
+    const Clock::time_point start = Clock::now();
+    checker->add(scenario.elements[i]);
+    const Clock::time_point end = Clock::now();
+    if (i >= last_tenth) add_us += elapsed_us(start, end);
+  }
+  point.add_us = add_us / static_cast<double>(count - last_tenth);
+  checker->set_moving(scenario.moving);
+  checker->finish();
+  (void)checker->check(poses.front());  // builds what is built on demand
+  const auto grown = static_cast<double>(heap_bytes()) - static_cast<double>(bytes);
+  point.bytes_per_element = grown / static_cast<double>(count - last_half);
+
+  Run run;
+  run.answers.resize(poses.size());
+  run.times_us.assign(poses.size(), std::numeric_limits<double>::infinity());
+  run.batch_mean_us = std::numeric_limits<double>::infinity();
+  for (std::size_t round = 0; round < plan.rounds; ++round) {
+    run_timed(*checker, poses, run);
+    run_batch(*checker, poses, run);
+  }
+  point.move_us = quantile(run.times_us, 0.5);
+  point.move_mean_us = run.batch_mean_us;
+  return point;
+}
+
+}  // namespace dowel::bench

@@ -1,0 +1,259 @@
+#include "report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+namespace dowel::bench {
+
+namespace {
+
+std::string text(double value) {
+  char buffer[32];
+  const char* format = value < 1.0 ? "%.2f" : value < 10.0 ? "%.1f" : "%.0f";
+  (void)std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::vector<const Run*> select(const Results& results, const std::string& method, MotionKind kind,
+                               const std::string& scenario = {}) {
+  std::vector<const Run*> found;
+  for (const Run& run : results.runs) {
+    if (run.method == method && run.kind == kind && (scenario.empty() || run.scenario == scenario))
+      found.push_back(&run);
+  }
+  return found;
+}
+
+std::vector<MotionKind> kinds_of(const Results& results) {
+  std::vector<MotionKind> kinds;
+  for (const MotionKind kind : kMotionKinds) {
+    for (const Run& run : results.runs) {
+      if (run.kind == kind) {
+        kinds.push_back(kind);
+        break;
+      }
+    }
+  }
+  return kinds;
+}
+
+constexpr const char* kReference = "FCL OBBRSS";
+
+/// Geometric mean over the motions (without "contained", which triangle methods cannot see) of the
+/// reference's time over the method's.
+double ratio(const Results& results, const std::string& method, double Statistics::*value) {
+  double sum = 0.0;
+  int count = 0;
+  for (const MotionKind kind : kinds_of(results)) {
+    if (kind == MotionKind::Contained) continue;
+    const auto reference = select(results, kReference, kind);
+    if (reference.empty()) return 0.0;
+    sum +=
+        std::log(statistics(reference).*value / (statistics(select(results, method, kind)).*value));
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::exp(sum / count);
+}
+
+void header(std::ostream& out, const std::vector<std::string>& columns) {
+  for (const std::string& column : columns) out << "| " << column << " ";
+  out << "|\n";
+  for (std::size_t i = 0; i < columns.size(); ++i) out << (i == 0 ? "|---" : "|---:");
+  out << "|\n";
+}
+
+void write_scenarios(std::ostream& out, const Results& results) {
+  out << "### Scenes\n\nTriangles, and those of the paper's scenario of that name.\n\n";
+  header(out, {"scene", "elements", "static", "paper", "moving", "paper"});
+  for (const Scenario& scene : results.scenarios) {
+    out << "| (" << scene.name << ") " << scene.title << " | " << scene.elements.size() << " | "
+        << static_triangles(scene) << " | " << scene.paper_static_triangles << " | "
+        << scene.moving->solid->triangles.size() << " | " << scene.paper_moving_triangles << " |\n";
+  }
+}
+
+void write_times(std::ostream& out, const Results& results) {
+  out << "\n### Time per move\n\nMicroseconds: median / 99th percentile / mean of a batch, over "
+         "the "
+         "poses of all scenes. Last columns: how many times faster than "
+      << kReference << ", geometric mean over free to contact of medians and of means.\n\n";
+  std::vector<std::string> columns{"method"};
+  const std::vector<MotionKind> kinds = kinds_of(results);
+  for (const MotionKind kind : kinds) columns.emplace_back(to_string(kind));
+  columns.insert(columns.end(), {"medians", "means"});
+  header(out, columns);
+  for (const std::string& method : results.methods) {
+    out << "| " << method;
+    for (const MotionKind kind : kinds) {
+      const Statistics s = statistics(select(results, method, kind));
+      out << " | " << text(s.median_us) << " / " << text(s.p99_us) << " / " << text(s.mean_us);
+    }
+    out << " | " << text(ratio(results, method, &Statistics::median_us)) << " | "
+        << text(ratio(results, method, &Statistics::mean_us)) << " |\n";
+  }
+}
+
+void write_scores(std::ostream& out, const Results& results, const char* title,
+                  Score (*score)(std::span<const Run* const>)) {
+  out << title;
+  std::vector<std::string> columns{"method"};
+  const std::vector<MotionKind> kinds = kinds_of(results);
+  for (const MotionKind kind : kinds) {
+    columns.emplace_back(kind == MotionKind::Insert    ? "penetrating"
+                         : kind == MotionKind::Contact ? "touching"
+                                                       : to_string(kind));
+  }
+  header(out, columns);
+  for (const std::string& method : results.methods) {
+    out << "| " << method;
+    for (const MotionKind kind : kinds) {
+      const Score s = score(select(results, method, kind));
+      out << " | " << s.false_yes << " / " << s.false_no;
+      if (s.other != 0) out << " / " << s.other;
+      out << " of " << s.known;
+    }
+    out << " |\n";
+  }
+}
+
+void write_counters(std::ostream& out, const Results& results) {
+  out << "\n### Tests\n\nN_b / N_p of 1,000 moves (box pairs, of elements and of tree nodes / "
+         "triangle "
+         "pairs).\n\n";
+  std::vector<std::string> columns{"scene, method"};
+  const std::vector<MotionKind> kinds = kinds_of(results);
+  for (const MotionKind kind : kinds) columns.emplace_back(to_string(kind));
+  header(out, columns);
+  for (const Scenario& scene : results.scenarios) {
+    for (const std::string& method : results.methods) {
+      std::string line = "| (" + scene.name + ") " + method;
+      bool is_counted = false;
+      for (const MotionKind kind : kinds) {
+        for (const Run* run : select(results, method, kind, scene.name)) {
+          if (!run->counters) continue;
+          is_counted = true;
+          const double scale = 1000.0 / static_cast<double>(run->answers.size());
+          line +=
+              " | " +
+              std::to_string(std::llround(scale * static_cast<double>(run->counters->box_tests))) +
+              " / " +
+              std::to_string(
+                  std::llround(scale * static_cast<double>(run->counters->triangle_tests)));
+        }
+      }
+      if (is_counted) out << line << " |\n";
+    }
+  }
+}
+
+void write_scale(std::ostream& out, const Results& results) {
+  if (results.scale.empty()) return;
+  out << "\n### Growth\n\nMean cost of adding an element to a scene of that size (us) / median and "
+         "batch "
+         "mean of a move among them (us) / heap bytes an element beyond shared meshes.\n\n";
+  std::vector<std::string> columns{"method"};
+  for (const ScalePoint& point : results.scale) {
+    if (point.method == results.scale.front().method)
+      columns.push_back(std::to_string(point.count));
+  }
+  header(out, columns);
+  std::string method;
+  for (const ScalePoint& point : results.scale) {
+    if (point.method != method) out << (method.empty() ? "| " : " |\n| ") << point.method;
+    method = point.method;
+    out << " | " << text(point.add_us) << " / " << text(point.move_us) << ", "
+        << text(point.move_mean_us) << " / " << std::llround(point.bytes_per_element);
+  }
+  out << " |\n";
+}
+
+}  // namespace
+
+void write_tables(std::ostream& out, const Results& results) {
+  write_scenarios(out, results);
+  if (!results.runs.empty()) {
+    write_times(out, results);
+    write_scores(
+        out, results,
+        "\n### Wrong answers to \"is there interference?\"\n\nFalse yes / false no of the poses "
+        "whose truth is known by construction; / contact and clear mixed up. Triangle methods "
+        "know only whether surfaces meet, and a hit is taken for interference.\n\n",
+        score_interference);
+    write_scores(
+        out, results,
+        "\n### Wrong answers to the method's own question\n\nFor dowel the verdict; for "
+        "triangle methods whether the facets' surfaces meet, an exact touch included. False yes "
+        "/ false no / contact and clear mixed up.\n\n",
+        score_own_question);
+    write_counters(out, results);
+  }
+  write_scale(out, results);
+}
+
+void write_json(std::ostream& out, const Results& results) {
+  nlohmann::json json;
+  for (const Scenario& scene : results.scenarios) {
+    json["scenes"].push_back({{"name", scene.name},
+                              {"title", scene.title},
+                              {"elements", scene.elements.size()},
+                              {"static_triangles", static_triangles(scene)},
+                              {"moving_triangles", scene.moving->solid->triangles.size()}});
+  }
+  for (const Run& run : results.runs) {
+    const Run* const one[] = {&run};
+    const Statistics s = statistics(one);
+    const Score interference = score_interference(one);
+    const Score own = score_own_question(one);
+    const auto score = [](const Score& value) {
+      return nlohmann::json{{"known", value.known},
+                            {"false_yes", value.false_yes},
+                            {"false_no", value.false_no},
+                            {"other", value.other}};
+    };
+    nlohmann::json item{{"scene", run.scenario},     {"motion", to_string(run.kind)},
+                        {"method", run.method},      {"poses", run.answers.size()},
+                        {"median_us", s.median_us},  {"p99_us", s.p99_us},
+                        {"mean_us", s.mean_us},      {"interference", score(interference)},
+                        {"own_question", score(own)}};
+    if (run.counters) {
+      item["box_tests"] = run.counters->box_tests;
+      item["triangle_tests"] = run.counters->triangle_tests;
+    }
+    json["runs"].push_back(std::move(item));
+  }
+  for (const ScalePoint& point : results.scale) {
+    json["growth"].push_back({{"elements", point.count},
+                              {"method", point.method},
+                              {"add_us", point.add_us},
+                              {"move_median_us", point.move_us},
+                              {"move_mean_us", point.move_mean_us},
+                              {"bytes_per_element", point.bytes_per_element}});
+  }
+  for (const std::string& method : results.methods) {
+    if (results.runs.empty()) break;
+    json["times_faster_than_reference"][method] = {
+        {"medians", ratio(results, method, &Statistics::median_us)},
+        {"means", ratio(results, method, &Statistics::mean_us)}};
+  }
+  out << json.dump(1) << '\n';
+}
+
+void write_wrong_verdicts(std::ostream& out, const Results& results, std::size_t limit) {
+  for (const Run& run : results.runs) {
+    std::size_t shown = 0;
+    for (std::size_t i = 0; i < run.answers.size() && shown < limit; ++i) {
+      const auto& got = run.answers[i].verdict;
+      const auto& truth = run.truth[i].verdict;
+      if (!got || !truth || *got == *truth) continue;
+      ++shown;
+      out << run.method << ", scene " << run.scenario << ", " << to_string(run.kind) << " pose "
+          << i << ": " << dowel::to_string(*got) << ", should be " << dowel::to_string(*truth)
+          << '\n';
+    }
+  }
+}
+
+}  // namespace dowel::bench
