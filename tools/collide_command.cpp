@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Arguments {
+struct CollideArguments {
   std::string scene;
   std::string poses;
   std::string catalog;
@@ -69,7 +69,7 @@ std::shared_ptr<const CollisionElement> element_of_file(ImportResult&& import,
 /// Reads what the scene's bodies are made of, each file and element once.
 class ElementLoader {
  public:
-  ElementLoader(const Arguments& arguments, HoleMode holes) : holes_(holes) {
+  ElementLoader(const CollideArguments& arguments, HoleMode holes) : holes_(holes) {
     options_.whole_file = true;
     options_.deflection_mm = arguments.deflection_mm;
     if (!arguments.catalog.empty()) {
@@ -137,7 +137,7 @@ struct PoseReport {
 /// A scene ready to be asked at poses.
 class Checker {
  public:
-  Checker(const Arguments& arguments, const SceneFile& file, const std::vector<Pose>& poses)
+  Checker(const CollideArguments& arguments, const SceneFile& file, const std::vector<Pose>& poses)
       : file_(file), poses_(poses), is_sweep_(arguments.sweep) {
     options_ = {.tolerance_mm = arguments.tolerance_mm,
                 .holes = arguments.holes == "paper" ? HoleMode::Paper : HoleMode::Exact,
@@ -311,7 +311,7 @@ void print_text(const Checker& checker, const std::vector<PoseReport>& reports) 
               all["model_bytes"].get<unsigned long>(), all["build_ms"].get<double>());
 }
 
-void collide(const Arguments& arguments) {
+void collide(const CollideArguments& arguments) {
   const SceneFile scene = read_scene(arguments.scene);
   const std::vector<Pose> poses = read_poses(arguments.poses);
   Checker checker(arguments, scene, poses);
@@ -326,7 +326,7 @@ void collide(const Arguments& arguments) {
 }  // namespace
 
 void add_collide_command(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CollideArguments>();
   CLI::App* command = app.add_subcommand(
       "collide", "Check a moving element against all others at poses from a file.");
   command->add_option("SCENE", arguments->scene, "scene file, JSON (dowel-scene/1)")->required();

@@ -140,7 +140,7 @@ void PlacedBodies::relieve(const std::string& name, const std::vector<Pose>& pos
   }
 }
 
-std::vector<Touch> PlacedBodies::named(const std::vector<BodyVerdict>& verdicts) const {
+std::vector<Touch> PlacedBodies::named(std::span<const BodyVerdict> verdicts) const {
   const auto number = [&](const std::string& name) { return bodies_.at(name).number; };
   std::vector<Touch> touches;
   for (const BodyVerdict& verdict : verdicts) {
@@ -157,7 +157,7 @@ std::vector<Touch> PlacedBodies::check(const std::string& moving, const Pose& X_
                                        double tolerance_mm) {
   const Body& body = bodies_.at(moving);
   relieve(moving, {X_WI});
-  const std::vector<Touch> touches =
+  std::vector<Touch> touches =
       named(scene_.check(std::array{body.id}, std::array{X_WI}, {.tolerance_mm = tolerance_mm}));
   relieve(moving, {body.X_WI});
   return touches;

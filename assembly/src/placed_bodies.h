@@ -55,7 +55,7 @@ class PlacedBodies {
   /// Declares the threads between `name`, at any of `poses`, and all others.
   void relieve(const std::string& name, const std::vector<Pose>& poses);
   bool may_thread(const std::string& tapped, const std::string& screw);
-  std::vector<Touch> named(const std::vector<BodyVerdict>& verdicts) const;
+  std::vector<Touch> named(std::span<const BodyVerdict> verdicts) const;
 
   FindElement find_element_;
   LoadSolid load_solid_;

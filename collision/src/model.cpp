@@ -1,6 +1,7 @@
 #include "dowel/collision/model.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -8,6 +9,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/mesh_defect.h"
+#include "dowel/kernel/tolerance.h"
 #include "exact_face.h"
 
 namespace dowel {
@@ -18,6 +20,9 @@ constexpr std::uint32_t kTrianglesPerLeaf = 4;
 /// Sine of the dihedral angle below which two faces run on smoothly into each other (about 1
 /// degree).
 constexpr double kSmoothSine = 0.02;
+
+/// Planes closer than this are one.
+constexpr double kMainPlaneSlack_mm = 1.0e-9;
 
 /// Measured rim errors are taken with this allowance: they are measured at the middle of a chord.
 constexpr double kRimAllowance = 1.25;
@@ -113,6 +118,8 @@ CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
   build_tree();
   find_overhangs();
   find_inner_points();
+  find_main_planes();
+  profiles_ = find_axis_profiles(*this);
 }
 
 void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) {
@@ -136,6 +143,7 @@ void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) 
       t.normal.normalize();
     }
     t.slack_mm = is_exact(face) && !is_plane(face.surface) ? face.facet_error_mm : 0.0;
+    const bool is_flat = is_plane(face.surface);
     if (!is_exact(face)) max_unknown_mm_ = std::max(max_unknown_mm_, face.facet_error_mm);
     for (std::size_t edge = 0; edge < 3; ++edge) {
       const std::uint32_t beyond = neighbours[i][edge];
@@ -147,6 +155,7 @@ void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) 
         t.slack_mm = std::max(t.slack_mm, kRimAllowance * rim_error_mm);
       }
     }
+    t.normal_slack_mm = is_flat ? 0.0 : t.slack_mm;
     max_slack_mm_ = std::max(max_slack_mm_, t.slack_mm);
   }
 
@@ -180,7 +189,13 @@ void CollisionModel::build_tree() {
   for (std::uint32_t t = 0; t < count; ++t) {
     for (const Eigen::Vector3d& corner : triangles_[t].corners) boxes[t].extend(corner);
     centers[t] = boxes[t].center();
-    boxes[t] = boxes[t].padded(triangles_[t].slack_mm);
+    const ModelTriangle& triangle = triangles_[t];
+    const Eigen::Array3d across = (1.0 - triangle.normal.array().square()).max(0.0).sqrt();
+    const Eigen::Vector3d reach = triangle.normal_slack_mm > 0.0
+                                      ? Eigen::Vector3d::Constant(triangle.slack_mm)
+                                      : Eigen::Vector3d((triangle.slack_mm * across).matrix());
+    boxes[t].min -= reach;
+    boxes[t].max += reach;
   }
   nodes_.clear();
   nodes_.reserve(2 * count / kTrianglesPerLeaf + 1);
@@ -313,13 +328,41 @@ void CollisionModel::find_inner_points() {
   }
 }
 
+void CollisionModel::find_main_planes() {
+  constexpr std::size_t kMainPlanes = 16;
+  struct Entry {
+    PlaneSurface plane;
+    double area_mm2;
+  };
+  std::vector<Entry> entries;
+  for (const Face& face : solid_->faces) {
+    const auto* plane = std::get_if<PlaneSurface>(&face.surface);
+    if (plane == nullptr) continue;
+    const auto known = std::ranges::find_if(entries, [&](const Entry& entry) {
+      return entry.plane.normal.dot(plane->normal) > 0.0 &&
+             entry.plane.normal.cross(plane->normal).norm() <= kParallel_rad &&
+             std::abs(entry.plane.normal.dot(plane->origin - entry.plane.origin)) <=
+                 kMainPlaneSlack_mm;
+    });
+    if (known == entries.end()) {
+      entries.push_back({*plane, face.area_mm2});
+    } else {
+      known->area_mm2 += face.area_mm2;
+    }
+  }
+  std::ranges::stable_sort(entries, std::ranges::greater(), &Entry::area_mm2);
+  if (entries.size() > kMainPlanes) entries.resize(kMainPlanes);
+  for (const Entry& entry : entries) main_planes_.push_back(entry.plane);
+}
+
 std::size_t CollisionModel::memory_bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(BvhNode) +
          triangles_.capacity() * sizeof(ModelTriangle) +
          component_of_.capacity() * sizeof(component_of_[0]) +
          overhangs_.capacity() * sizeof(Chord) +
          overhang_begin_.capacity() * sizeof(overhang_begin_[0]) +
-         inner_points_.capacity() * sizeof(InnerPoint);
+         inner_points_.capacity() * sizeof(InnerPoint) +
+         main_planes_.capacity() * sizeof(PlaneSurface) + profiles_.memory_bytes();
 }
 
 }  // namespace dowel

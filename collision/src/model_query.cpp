@@ -84,6 +84,8 @@ std::optional<int> count_crossings(const CollisionModel& model, const Eigen::Vec
   return crossings;
 }
 
+constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
+
 /// What is nearest so far.
 struct Best {
   FacePoint place;
@@ -121,31 +123,45 @@ NearestPoint to_result(const CollisionModel& model, const Best& best, const Eige
           best.triangle, best.place.place == FacePoint::Place::Face};
 }
 
-}  // namespace
-
-NearestPoint CollisionModel::nearest(const Eigen::Vector3d& point) const {
+void search(const CollisionModel& model, const Eigen::Vector3d& point, Best& best) {
   struct Entry {
     std::uint32_t node;
     double distance_squared;
   };
   std::array<Entry, kStackSize> stack{};
   std::size_t depth = 0;
-  stack[depth++] = {0, distance_squared(nodes_[0], point)};
-  Best best;
+  stack[depth++] = {0, distance_squared(model.nodes()[0], point)};
   while (depth > 0) {
     const Entry entry = stack[--depth];
     if (entry.distance_squared >= best.place.distance_squared_mm2) continue;
-    const BvhNode& node = nodes_[entry.node];
+    const BvhNode& node = model.nodes()[entry.node];
     if (node.is_leaf()) {
-      for (std::uint32_t i = 0; i < node.count; ++i) best.look_at(*this, node.first + i, point);
+      for (std::uint32_t i = 0; i < node.count; ++i) best.look_at(model, node.first + i, point);
       continue;
     }
-    Entry near{node.first, distance_squared(nodes_[node.first], point)};
-    Entry far{node.first + 1, distance_squared(nodes_[node.first + 1], point)};
+    Entry near{node.first, distance_squared(model.nodes()[node.first], point)};
+    Entry far{node.first + 1, distance_squared(model.nodes()[node.first + 1], point)};
     if (far.distance_squared < near.distance_squared) std::swap(near, far);
     stack[depth++] = far;
     stack[depth++] = near;
   }
+}
+
+}  // namespace
+
+NearestPoint CollisionModel::nearest(const Eigen::Vector3d& point) const {
+  Best best;
+  search(*this, point, best);
+  return to_result(*this, best, point);
+}
+
+std::optional<NearestPoint> CollisionModel::nearest_within(const Eigen::Vector3d& point,
+                                                           double radius_mm) const {
+  Best best;
+  best.place.distance_squared_mm2 = radius_mm * radius_mm;
+  best.triangle = kNoTriangle;
+  search(*this, point, best);
+  if (best.triangle == kNoTriangle) return std::nullopt;
   return to_result(*this, best, point);
 }
 

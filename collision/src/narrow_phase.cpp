@@ -1,16 +1,25 @@
 #include "narrow_phase.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "dowel/collision/axis_profile.h"
+#include "dowel/collision/box_separation.h"
 #include "exact_face.h"
 #include "triangle_pair.h"
 #include "witness.h"
 
 namespace dowel {
 namespace {
+
+/// A share of the tolerance that certificates keep for rounding.
+constexpr double kSafety = 1.0e-6;
+
+/// Facets end at a plane where they pass it by no more than this: rounding of placed coordinates.
+constexpr double kPlaneSlack_mm = 1.0e-9;
 
 /// Fractions of a crossing segment at which a witness is sought.
 constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
@@ -19,8 +28,16 @@ constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
 constexpr double kReachTolerances = 64.0;
 constexpr double kReachSlacks = 16.0;
 
-/// Alternating projections between two exact faces before their gap is taken as it stands.
+/// Alternating projections between two exact faces before their gap is taken as it stands, and the
+/// share of the tolerance below which another one gains nothing.
 constexpr int kProjections = 16;
+constexpr double kProjectionGain = 1.0e-3;
+
+/// Cosine above which two facets are parallel enough to look for what they have in common.
+constexpr double kOpposite = 0.999;
+
+/// Most faces' planes of a body that are asked whether they keep the other body off.
+constexpr std::size_t kMaxPlanes = 8;
 
 /// Boxes of a tree of A, in the frame of A, against boxes of B in the frame of B.
 class NodeSeparation {
@@ -50,35 +67,37 @@ double size_squared(const BvhNode& node) {
   return (node.max - node.min).squaredNorm();
 }
 
-/// Calls `visit(leaf of A, leaf of B)` for all pairs whose boxes `wanted(gap_mm)`; stops where it
-/// returns false. The nearer pair of children comes first.
-template <class Wanted, class Visit>
+/// Calls `visit(leaf of A, leaf of B)` for all pairs of leaves of wanted nodes whose boxes are
+/// `wanted(gap_mm)`; stops where it returns false. The nearer pair of children comes first.
+template <class WantedNodes, class Wanted, class Visit>
 void for_each_leaf_pair(const ModelPair& pair, NarrowScratch& scratch, QueryCounters& counters,
-                        const Wanted& wanted, const Visit& visit) {
+                        const WantedNodes& wanted_nodes, const Wanted& wanted, const Visit& visit) {
   const NodeSeparation separation(pair.X_BA);
   const auto nodes_a = pair.a.nodes();
   const auto nodes_b = pair.b.nodes();
   scratch.stack.clear();
-  scratch.stack.push_back({0, 0});
+  scratch.stack.push_back({0, 0, separation.gap_mm(nodes_a[0], nodes_b[0])});
+  ++counters.box_tests;
   while (!scratch.stack.empty()) {
-    const auto [a, b] = scratch.stack.back();
+    const auto [a, b, gap_mm] = scratch.stack.back();
     scratch.stack.pop_back();
+    if (!wanted(gap_mm)) continue;
     const BvhNode& node_a = nodes_a[a];
     const BvhNode& node_b = nodes_b[b];
-    ++counters.box_tests;
-    if (!wanted(separation.gap_mm(node_a, node_b))) continue;
+    if (!wanted_nodes(node_a, node_b)) continue;
     if (node_a.is_leaf() && node_b.is_leaf()) {
       if (!visit(node_a, node_b)) return;
       continue;
     }
     const bool split_a =
         node_b.is_leaf() || (!node_a.is_leaf() && size_squared(node_a) > size_squared(node_b));
-    NarrowScratch::NodePair near{split_a ? node_a.first : a, split_a ? b : node_b.first};
-    NarrowScratch::NodePair far{split_a ? node_a.first + 1 : a, split_a ? b : node_b.first + 1};
-    if (separation.gap_mm(nodes_a[far.a], nodes_b[far.b]) <
-        separation.gap_mm(nodes_a[near.a], nodes_b[near.b])) {
-      std::swap(near, far);
-    }
+    NarrowScratch::NodePair near{split_a ? node_a.first : a, split_a ? b : node_b.first, 0.0};
+    NarrowScratch::NodePair far{split_a ? node_a.first + 1 : a, split_a ? b : node_b.first + 1,
+                                0.0};
+    near.gap_mm = separation.gap_mm(nodes_a[near.a], nodes_b[near.b]);
+    far.gap_mm = separation.gap_mm(nodes_a[far.a], nodes_b[far.b]);
+    counters.box_tests += 2;
+    if (far.gap_mm < near.gap_mm) std::swap(near, far);
     scratch.stack.push_back(far);
     scratch.stack.push_back(near);
   }
@@ -95,74 +114,353 @@ PlacedTriangle placed(const Pose& X_BA, const ModelTriangle& t) {
           X_BA.rotation() * t.normal};
 }
 
-/// True where all corners lie on one side of the plane, further than `margin_mm` from it.
-bool beyond_plane(const Corners& corners, const Eigen::Vector3d& normal,
-                  const Eigen::Vector3d& origin, double margin_mm) {
+/// Lower bound of the distance of the corners from the plane; 0 where they lie on both sides.
+double distance_from_plane(const Corners& corners, const Eigen::Vector3d& normal,
+                           const Eigen::Vector3d& origin) {
   const double d0 = normal.dot(corners[0] - origin);
   const double d1 = normal.dot(corners[1] - origin);
   const double d2 = normal.dot(corners[2] - origin);
-  return std::min({d0, d1, d2}) > margin_mm || std::max({d0, d1, d2}) < -margin_mm;
+  return std::max({std::min({d0, d1, d2}), -std::max({d0, d1, d2}), 0.0});
+}
+
+/// How far two facets are apart for certain, by the plane of either: each may stand off its face
+/// along its normal, and the other along both. Negative: not apart.
+double apart_by_planes(const ModelTriangle& a, const PlacedTriangle& a_B, const ModelTriangle& b) {
+  const double sine = a_B.normal_B.cross(b.normal).norm();
+  const double of_a = a.normal_slack_mm + a.slack_mm * sine;
+  const double of_b = b.normal_slack_mm + b.slack_mm * sine;
+  const double by_b = distance_from_plane(a_B.corners_B, b.normal, b.corners[0]);
+  const double by_a = distance_from_plane(b.corners, a_B.normal_B, a_B.corners_B[0]);
+  return std::max(by_b - of_a - b.normal_slack_mm, by_a - of_b - a.normal_slack_mm);
+}
+
+/// A point in the middle of what two facets in one plane have in common; nothing where that is no
+/// area.
+std::optional<Eigen::Vector3d> middle_of_overlap(const Corners& a, const Corners& b,
+                                                 const Eigen::Vector3d& normal_b) {
+  std::array<Eigen::Vector3d, 9> polygon{a[0], a[1], a[2]};
+  std::size_t count = 3;
+  for (std::size_t edge = 0; edge < 3 && count > 2; ++edge) {
+    const Eigen::Vector3d inward = normal_b.cross(b[(edge + 1) % 3] - b[edge]);
+    std::array<Eigen::Vector3d, 9> kept;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d& p = polygon[i];
+      const Eigen::Vector3d& q = polygon[(i + 1) % count];
+      const double dp = inward.dot(p - b[edge]);
+      const double dq = inward.dot(q - b[edge]);
+      if (dp >= 0.0) kept[n++] = p;
+      if ((dp < 0.0) != (dq < 0.0)) kept[n++] = p + dp / (dp - dq) * (q - p);
+    }
+    polygon = kept;
+    count = n;
+  }
+  if (count < 3) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
+  return sum / static_cast<double>(count);
 }
 
 Corners shifted(const Corners& corners, const Eigen::Vector3d& by) {
   return {corners[0] + by, corners[1] + by, corners[2] + by};
 }
 
+/// Planes of one body's faces that have all of the other body before them, but for less than the
+/// tolerance: no ball of that diameter that fits into the other body is behind them, and so nothing
+/// behind them can take part in an interference.
+class KeptOff {
+ public:
+  /// `X_OB`: pose of the body in the other one.
+  KeptOff(const CollisionModel& body, const Obb& other, const Pose& X_OB, double tolerance_mm) {
+    for (const PlaneSurface& plane : body.main_planes()) {
+      if (count_ == kMaxPlanes) break;
+      const Eigen::Vector3d normal_O = X_OB.rotation() * plane.normal;
+      const double center = normal_O.dot(other.center - X_OB * plane.origin);
+      const double reach =
+          (other.axes.transpose() * normal_O).cwiseAbs().dot(other.half_extents_mm);
+      if (center - reach > -tolerance_mm * (1.0 - kSafety)) planes_[count_++] = &plane;
+    }
+  }
+
+  bool contains(const BvhNode& node) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Eigen::Vector3d center = 0.5 * (node.min + node.max) - planes_[i]->origin;
+      const double reach = planes_[i]->normal.cwiseAbs().dot(0.5 * (node.max - node.min));
+      if (planes_[i]->normal.dot(center) + reach <= kPlaneSlack_mm) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::array<const PlaneSurface*, kMaxPlanes> planes_{};
+  std::size_t count_ = 0;
+};
+
 /// Collects the evidence on one pair.
 class Judge {
  public:
-  Judge(const ModelPair& pair, const QueryOptions& options, QueryCounters& counters)
+  Judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+        NarrowScratch& scratch, QueryCounters& counters)
       : pair_(pair),
         X_AB_(pair.X_BA.inverse()),
         options_(options),
+        memory_(memory),
+        scratch_(scratch),
         counters_(counters),
-        erosion_mm_(0.5 * options.tolerance_mm) {
-    result_.gap_mm = options.tolerance_mm;
+        erosion_mm_(0.5 * options.tolerance_mm) {}
+
+  PairVerdict decide() {
+    if (knows_ball()) return result_;
+    const bool is_free = boxes_are_shallow() || shaft_fits();
+    if (is_decided_) return result_;
+    if (!still_touches()) look_for_contact();
+    if (is_free) return result_;
+    if (is_suspect_) look_for_interference();
+    if (result_.verdict != Verdict::Interference) look_for_containment();
+    return result_;
   }
 
-  /// False once interference is proven.
-  bool look_at(const BvhNode& leaf_a, const BvhNode& leaf_b) {
+ private:
+  // What forbids interference.
+
+  bool boxes_are_shallow() {
+    const Obb obb_a_B = transformed(pair_.X_BA, pair_.obb_a);
+    const double overlap = -options_.tolerance_mm * (1.0 - kSafety);
+    const BoxSeparation boxes = separate(obb_a_B, pair_.obb_b, overlap, memory_.shallow_plane);
+    memory_.shallow_plane = static_cast<std::int8_t>(boxes.plane);
+    return boxes.plane >= 0;
+  }
+
+  /// Looks for a shaft of one body in a bore of the other. May decide the pair.
+  bool shaft_fits() {
+    if (options_.holes == HoleMode::Paper) return false;
+    if (memory_.shaft != PairMemory::kNone &&
+        take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore)) {
+      return true;
+    }
+    memory_.shaft = PairMemory::kNone;
+    for (const bool shaft_is_in_a : {true, false}) {
+      const CollisionModel& with_shaft = shaft_is_in_a ? pair_.a : pair_.b;
+      const CollisionModel& with_bore = shaft_is_in_a ? pair_.b : pair_.a;
+      const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
+      const auto& shafts = with_shaft.profiles().shafts;
+      const auto& bores = with_bore.profiles().bores;
+      for (std::uint32_t s = 0; s < shafts.size(); ++s) {
+        const Eigen::Vector3d origin = X_VS * shafts[s].origin;
+        const Eigen::Vector3d direction = X_VS.rotation() * shafts[s].direction;
+        for (std::uint32_t v = 0; v < bores.size(); ++v) {
+          if (may_hold(origin, direction, bores[v]) && take_fit(shaft_is_in_a, s, v)) {
+            memory_.shaft_is_in_a = shaft_is_in_a;
+            memory_.shaft = s;
+            memory_.bore = v;
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Whether a shaft's axis passes the middle of the bore within its largest radius.
+  static bool may_hold(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                       const AxisProfile& bore) {
+    if (std::abs(direction.dot(bore.direction)) < 0.99) return false;
+    const double middle = 0.5 * (bore.steps.front().from_mm + bore.steps.back().to_mm);
+    const Eigen::Vector3d offset = bore.origin + middle * bore.direction - origin;
+    double radius = 0.0;
+    for (const ProfileStep& step : bore.steps) radius = std::max(radius, step.radius_mm);
+    return (offset - direction.dot(offset) * direction).squaredNorm() <= radius * radius;
+  }
+
+  bool take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
+    const AxisProfile& shaft = (shaft_is_in_a ? pair_.a : pair_.b).profiles().shafts[s];
+    const AxisProfile& bore = (shaft_is_in_a ? pair_.b : pair_.a).profiles().bores[v];
+    // Reliefs are given in B; a shaft of B in a bore of A sees them in A only where there are none.
+    if (!shaft_is_in_a && !pair_.reliefs_B.empty()) return false;
+    const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
+    const Fit fitted = fit(shaft, bore, X_VS, options_.tolerance_mm * (1.0 - kSafety),
+                           shaft_is_in_a ? pair_.reliefs_B : std::span<const ThreadRelief>());
+    if (!fitted.is_free) return false;
+    result_.method = Method::Exact;
+    const Eigen::Vector3d place_B =
+        shaft_is_in_a ? fitted.place_V : Eigen::Vector3d(pair_.X_BA * fitted.place_V);
+    if (fitted.gap_mm > options_.tolerance_mm) {
+      result_.gap_mm = fitted.gap_mm;
+      is_decided_ = true;
+    } else if (fitted.gap_is_met) {
+      touch(std::max(fitted.gap_mm, 0.0), place_B);
+      is_decided_ = true;
+    }
+    return true;
+  }
+
+  // Contact.
+
+  void touch(double gap_mm, const Eigen::Vector3d& place_B) {
+    result_.verdict = Verdict::Contact;
+    result_.gap_mm = gap_mm;
+    result_.witness_W = place_B;
+  }
+
+  bool still_touches() {
+    if (memory_.contact_a == PairMemory::kNone) return false;
+    const PlacedTriangle a_B = placed(pair_.X_BA, pair_.a.triangles()[memory_.contact_a]);
+    double ignored = 0.0;
+    if (touches(memory_.contact_a, a_B, memory_.contact_b, ignored)) return true;
+    memory_.contact_a = PairMemory::kNone;
+    return false;
+  }
+
+  /// Looks for facets within the tolerance; where there are none, finds how far they are apart.
+  void look_for_contact() {
+    double apart = std::numeric_limits<double>::infinity();
+    for_each_leaf_pair(
+        pair_, scratch_, counters_, [](const BvhNode&, const BvhNode&) { return true; },
+        [&](double gap_mm) {
+          if (gap_mm > options_.tolerance_mm) apart = std::min(apart, gap_mm);
+          return gap_mm <= options_.tolerance_mm;
+        },
+        [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
+          return for_each_pair(leaf_a, leaf_b,
+                               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                                 if (!touches(i, a_B, j, apart)) return true;
+                                 memory_.contact_a = i;
+                                 memory_.contact_b = j;
+                                 return false;
+                               });
+        });
+    if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, options_.tolerance_mm);
+  }
+
+  /// Calls `visit(i, facet i of A in B, j)` until it returns false.
+  template <class Visit>
+  bool for_each_pair(const BvhNode& leaf_a, const BvhNode& leaf_b, const Visit& visit) const {
     for (std::uint32_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
       const ModelTriangle& a = pair_.a.triangles()[i];
       if (options_.holes == HoleMode::Paper && a.is_hole) continue;
       const PlacedTriangle a_B = placed(pair_.X_BA, a);
       for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
         if (options_.holes == HoleMode::Paper && pair_.b.triangles()[j].is_hole) continue;
-        if (!look_at_triangles(i, a_B, j)) return false;
+        if (!visit(i, a_B, j)) return false;
       }
     }
     return true;
   }
 
-  /// Points stored deep in each solid, against the other.
-  void look_for_containment() {
-    for (const auto& inner : pair_.a.inner_points()) {
-      if (try_inner_point(pair_.X_BA * inner.point, inner.depth_mm)) return;
-    }
-    for (const auto& inner : pair_.b.inner_points()) {
-      if (try_inner_point(inner.point, inner.depth_mm)) return;
-    }
-  }
-
-  PairVerdict result() {
-    if (result_.verdict != Verdict::Contact) result_.gap_mm = 0.0;
-    if (result_.verdict == Verdict::Clear) result_.gap_mm = options_.tolerance_mm;
-    return result_;
-  }
-
-  bool proven() const { return result_.verdict == Verdict::Interference; }
-
- private:
-  bool look_at_triangles(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+  /// Whether the exact faces behind two facets come within the tolerance there. Else lowers `apart`
+  /// to a bound of their distance.
+  bool touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j, double& apart) {
     const ModelTriangle& a = pair_.a.triangles()[i];
     const ModelTriangle& b = pair_.b.triangles()[j];
     ++counters_.triangle_tests;
     const double slack = a.slack_mm + b.slack_mm;
     const double margin = options_.tolerance_mm + slack;
-    if (beyond_plane(a_B.corners_B, b.normal, b.corners[0], margin) ||
-        beyond_plane(b.corners, a_B.normal_B, a_B.corners_B[0], margin)) {
+    const double between = apart_by_planes(a, a_B, b);
+    if (between > options_.tolerance_mm) {
+      apart = std::min(apart, between);
+      return false;
+    }
+    note_method(a, b, slack);
+    if (a_B.normal_B.dot(b.normal) < -kOpposite) {
+      const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
+      if (middle && is_between_faces(i, j, *middle)) {
+        is_suspect_ = true;
+        return true;
+      }
+    }
+    const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
+    const double gap = std::sqrt(closest.distance_squared_mm2);
+    if (gap > margin) {
+      apart = std::min(apart, gap - slack);
+      return false;
+    }
+    is_suspect_ = true;
+    if (slack == 0.0) {
+      touch(gap, 0.5 * (closest.on_a + closest.on_b));
       return true;
     }
+    if (is_between_faces(i, j, closest.on_b)) return true;
+    apart = options_.tolerance_mm;
+    return false;
+  }
+
+  /// Projects to and fro between the exact faces behind two facets: both ends are real places of
+  /// the boundary.
+  bool is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b) {
+    double previous = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kProjections; ++step) {
+      const FacePoint near_a = nearest_on_patch(pair_.a, i, X_AB_ * on_b);
+      const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
+      const FacePoint near_b = nearest_on_patch(pair_.b, j, on_a);
+      if (!std::isfinite(near_a.distance_squared_mm2 + near_b.distance_squared_mm2)) return false;
+      on_b = near_b.point;
+      const double gap = std::sqrt(near_b.distance_squared_mm2);
+      if (gap <= options_.tolerance_mm) {
+        touch(gap, 0.5 * (on_a + on_b));
+        return true;
+      }
+      if (previous - gap < kProjectionGain * options_.tolerance_mm) return false;
+      previous = gap;
+    }
+    return false;
+  }
+
+  // Interference.
+
+  /// The ball that the last query found, moved with A, is still deep enough in both, or one close
+  /// to it is.
+  bool knows_ball() {
+    if (memory_.ball_depth_a_mm <= 0.0) return false;
+    const Eigen::Vector3d ball_B = pair_.X_BA * memory_.ball_A;
+    const double depth = std::min(memory_.ball_depth_a_mm,
+                                  memory_.ball_depth_b_mm - (ball_B - memory_.ball_B).norm());
+    if (depth < erosion_mm_ || options_.measure_depth || !pair_.reliefs_B.empty()) {
+      const double reach = kReachTolerances * options_.tolerance_mm;
+      if (try_witness(find_witness(pair_, ball_B, erosion_mm_, reach))) return true;
+      memory_.ball_depth_a_mm = 0.0;
+      return false;
+    }
+    result_.method = Method::Exact;
+    result_.verdict = Verdict::Interference;
+    result_.depth_mm = 2.0 * depth;
+    result_.gap_mm = 0.0;
+    result_.witness_W = ball_B;
+    return true;
+  }
+
+  void look_for_interference() {
+    if (memory_.crossing_a != PairMemory::kNone &&
+        crosses(memory_.crossing_a, placed(pair_.X_BA, pair_.a.triangles()[memory_.crossing_a]),
+                memory_.crossing_b)) {
+      return;
+    }
+    const KeptOff kept_off_a(pair_.a, pair_.obb_b, pair_.X_BA, options_.tolerance_mm);
+    const KeptOff kept_off_b(pair_.b, pair_.obb_a, X_AB_, options_.tolerance_mm);
+    for_each_leaf_pair(
+        pair_, scratch_, counters_,
+        [&](const BvhNode& a, const BvhNode& b) {
+          return !kept_off_a.contains(a) && !kept_off_b.contains(b);
+        },
+        [&](double gap_mm) { return gap_mm <= options_.tolerance_mm; },
+        [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
+          return for_each_pair(leaf_a, leaf_b,
+                               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                                 if (!crosses(i, a_B, j)) return true;
+                                 memory_.crossing_a = i;
+                                 memory_.crossing_b = j;
+                                 return false;
+                               });
+        });
+  }
+
+  /// Whether a witness of interference is found from two facets.
+  bool crosses(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+    const ModelTriangle& a = pair_.a.triangles()[i];
+    const ModelTriangle& b = pair_.b.triangles()[j];
+    ++counters_.triangle_tests;
+    const double slack = a.slack_mm + b.slack_mm;
+    const double margin = options_.tolerance_mm + slack;
+    if (apart_by_planes(a, a_B, b) > options_.tolerance_mm) return false;
     note_method(a, b, slack);
     const double reach = kReachTolerances * options_.tolerance_mm + kReachSlacks * slack;
     const auto crossing =
@@ -172,16 +470,13 @@ class Judge {
       for (const double fraction : kFractions) {
         const Eigen::Vector3d start =
             crossing->start + fraction * (crossing->end - crossing->start);
-        if (try_start(start, i, j, reach)) return false;
+        if (try_start(start, i, j, reach)) return true;
       }
     }
-    const bool needs_gap = result_.verdict == Verdict::Clear;
-    if (!needs_gap && slack == 0.0) return true;
+    if (slack == 0.0) return false;
     const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
-    if (closest.distance_squared_mm2 > margin * margin) return true;
-    if (slack > 0.0 && try_start(0.5 * (closest.on_a + closest.on_b), i, j, reach)) return false;
-    if (needs_gap) look_for_contact(closest, slack);
-    return true;
+    return closest.distance_squared_mm2 <= margin * margin &&
+           try_start(0.5 * (closest.on_a + closest.on_b), i, j, reach);
   }
 
   void note_method(const ModelTriangle& a, const ModelTriangle& b, double slack) {
@@ -195,18 +490,39 @@ class Judge {
   }
 
   bool try_start(const Eigen::Vector3d& start_B, std::uint32_t i, std::uint32_t j, double reach) {
-    const auto witness = find_witness(pair_, start_B, i, j, erosion_mm_, reach);
-    if (witness) prove(*witness);
-    return witness.has_value();
+    return try_witness(find_witness(pair_, start_B, i, j, erosion_mm_, reach));
+  }
+
+  bool try_witness(const std::optional<Witness>& witness) {
+    if (!witness) return false;
+    const Witness found = deepen(pair_, *witness, options_.measure_depth);
+    if (result_.method == Method::Boxes) result_.method = Method::Exact;
+    result_.verdict = Verdict::Interference;
+    result_.depth_mm = 2.0 * std::min(found.depth_a_mm, found.depth_b_mm);
+    result_.gap_mm = 0.0;
+    result_.witness_W = found.point_B;
+    memory_.ball_A = X_AB_ * found.point_B;
+    memory_.ball_B = found.point_B;
+    memory_.ball_depth_a_mm = found.depth_a_mm;
+    memory_.ball_depth_b_mm = found.depth_b_mm;
+    return true;
+  }
+
+  /// Points stored deep in each solid, against the other.
+  void look_for_containment() {
+    for (const auto& inner : pair_.a.inner_points()) {
+      if (try_inner_point(pair_.X_BA * inner.point, inner.depth_mm)) return;
+    }
+    for (const auto& inner : pair_.b.inner_points()) {
+      if (try_inner_point(inner.point, inner.depth_mm)) return;
+    }
   }
 
   bool try_inner_point(const Eigen::Vector3d& point_B, double depth_mm) {
     if (depth_mm < erosion_mm_ || !in_box(pair_.b, point_B) || !in_box(pair_.a, X_AB_ * point_B)) {
       return false;
     }
-    const auto witness = test_witness(pair_, point_B, erosion_mm_);
-    if (witness) prove(*witness);
-    return witness.has_value();
+    return try_witness(test_witness(pair_, point_B, erosion_mm_));
   }
 
   static bool in_box(const CollisionModel& model, const Eigen::Vector3d& point) {
@@ -214,64 +530,31 @@ class Judge {
     return (root.min.array() <= point.array()).all() && (point.array() <= root.max.array()).all();
   }
 
-  void prove(const Witness& witness) {
-    const Witness deeper = options_.measure_depth ? deepen(pair_, witness) : witness;
-    if (result_.method == Method::Boxes) result_.method = Method::Exact;
-    result_.verdict = Verdict::Interference;
-    result_.depth_mm = 2.0 * deeper.depth_mm;
-    result_.witness_W = deeper.point_B;
-  }
-
-  void look_for_contact(const ClosestPair& closest, double slack) {
-    const double tolerance = options_.tolerance_mm;
-    double gap = std::sqrt(closest.distance_squared_mm2);
-    Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
-    if (slack > 0.0) {
-      // Project to and fro between the exact solids: both ends are real places of the boundary.
-      Eigen::Vector3d on_b = closest.on_b;
-      double previous = std::numeric_limits<double>::infinity();
-      for (int step = 0; step < kProjections; ++step) {
-        const NearestPoint near_a = pair_.a.nearest(X_AB_ * on_b);
-        const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
-        const NearestPoint near_b = pair_.b.nearest(on_a);
-        on_b = near_b.point;
-        gap = near_b.inside ? 0.0 : near_b.distance_mm;
-        middle = 0.5 * (on_a + on_b);
-        if (gap <= tolerance || previous - gap < 1e-3 * tolerance) break;
-        previous = gap;
-      }
-    }
-    if (gap > tolerance) return;
-    result_.verdict = Verdict::Contact;
-    result_.gap_mm = gap;
-    result_.witness_W = middle;
-  }
-
   const ModelPair& pair_;
   Pose X_AB_;
   const QueryOptions& options_;
+  PairMemory& memory_;
+  NarrowScratch& scratch_;
   QueryCounters& counters_;
   double erosion_mm_;
+  bool is_decided_ = false;
+  bool is_suspect_ = false;  // facets came within the tolerance and what their faces stand off them
   PairVerdict result_;
 };
 
 }  // namespace
 
-PairVerdict judge(const ModelPair& pair, const QueryOptions& options, NarrowScratch& scratch,
-                  QueryCounters& counters) {
-  Judge judge(pair, options, counters);
-  for_each_leaf_pair(
-      pair, scratch, counters, [&](double gap) { return gap <= options.tolerance_mm; },
-      [&](const BvhNode& a, const BvhNode& b) { return judge.look_at(a, b); });
-  if (!judge.proven()) judge.look_for_containment();
-  return judge.result();
+PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+                  NarrowScratch& scratch, QueryCounters& counters) {
+  return Judge(pair, options, memory, scratch, counters).decide();
 }
 
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
                           NarrowScratch& scratch, QueryCounters& counters) {
   double best = cap_mm;
   for_each_leaf_pair(
-      pair, scratch, counters, [&](double gap) { return gap < best && best > 0.0; },
+      pair, scratch, counters, [](const BvhNode&, const BvhNode&) { return true; },
+      [&](double gap) { return gap < best && best > 0.0; },
       [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
         for (const ModelTriangle& a : pair.a.triangles().subspan(leaf_a.first, leaf_a.count)) {
           if (holes == HoleMode::Paper && a.is_hole) continue;
@@ -279,11 +562,7 @@ double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
           for (const ModelTriangle& b : pair.b.triangles().subspan(leaf_b.first, leaf_b.count)) {
             if (holes == HoleMode::Paper && b.is_hole) continue;
             ++counters.triangle_tests;
-            const double margin = best + a.slack_mm + b.slack_mm;
-            if (beyond_plane(a_B.corners_B, b.normal, b.corners[0], margin) ||
-                beyond_plane(b.corners, a_B.normal_B, a_B.corners_B[0], margin)) {
-              continue;
-            }
+            if (apart_by_planes(a, a_B, b) > best) continue;
             const ClosestPair closest =
                 closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
             best =

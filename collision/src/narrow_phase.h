@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "dowel/collision/model.h"
 #include "dowel/collision/scene.h"
 #include "dowel/collision/verdict.h"
+#include "dowel/kernel/box.h"
 #include "dowel/kernel/pose.h"
 
 // Two models in detail. Private to collision.
@@ -18,6 +20,7 @@ struct NarrowScratch {
   struct NodePair {
     std::uint32_t a;
     std::uint32_t b;
+    double gap_mm;  ///< lower bound of the distance of the nodes' boxes
   };
   std::vector<NodePair> stack;
 };
@@ -26,19 +29,55 @@ struct NarrowScratch {
 struct ModelPair {
   const CollisionModel& a;
   const CollisionModel& b;
+  const Obb& obb_a;                         ///< in the frame of A
+  const Obb& obb_b;                         ///< in the frame of B
   Pose X_BA;                                ///< pose of A in B
   std::span<const ThreadRelief> reliefs_B;  ///< in the frame of B
+};
+
+/// What the last query found out about a pair and the next one tries first. Nothing in it is
+/// believed without a test at the new pose, so that it never changes a verdict.
+struct PairMemory {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// Plane of the boxes behind which they overlapped by less than the tolerance, -1: none.
+  std::int8_t shallow_plane = -1;
+
+  /// Shaft and bore that fit, one in each body.
+  bool shaft_is_in_a = true;
+  std::uint32_t shaft = kNone;
+  std::uint32_t bore = kNone;
+
+  /// Facets that were in contact.
+  std::uint32_t contact_a = kNone;
+  std::uint32_t contact_b = kNone;
+
+  /// Facets whose crossing led to interference.
+  std::uint32_t crossing_a = kNone;
+  std::uint32_t crossing_b = kNone;
+
+  /// A ball in both bodies: its centre and its depth in each; depth 0: none.
+  Eigen::Vector3d ball_A = Eigen::Vector3d::Zero();
+  Eigen::Vector3d ball_B = Eigen::Vector3d::Zero();
+  double ball_depth_a_mm = 0.0;
+  double ball_depth_b_mm = 0.0;
+
+  /// A point deep in A is known to be this far outside B at some pose, and one of B outside A.
+  Eigen::Vector3d outside_B = Eigen::Vector3d::Zero();
+  double outside_mm = 0.0;
 };
 
 /// The verdict, with witness in the frame of B.
 ///
 /// Interference is only ever said with a witness: a point that lies tolerance / 2 or deeper in both
-/// exact solids. Candidates for it are the crossings of facets moved inwards by tolerance / 2 and,
-/// where exact faces stand off their facets, the places where facets come near each other; each is
-/// moved until it is deep enough in both solids or is given up. Containment is found by points
-/// stored deep inside each component.
-PairVerdict judge(const ModelPair& pair, const QueryOptions& options, NarrowScratch& scratch,
-                  QueryCounters& counters);
+/// exact solids. First it is asked whether there can be one at all: not where the boxes overlap by
+/// less than the tolerance along one of their planes, nor where a shaft is in a bore that leaves it
+/// room (axis_profile.h). Candidates for a witness are the crossings of facets moved inwards by
+/// tolerance / 2 and, where exact faces stand off their facets, the places where facets come near
+/// each other; each is moved until it is deep enough in both solids or is given up. Containment is
+/// found by points stored deep inside each component.
+PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+                  NarrowScratch& scratch, QueryCounters& counters);
 
 /// Lower bound of the distance of the two solids, up to `cap_mm`; 0 where they touch or overlap.
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,

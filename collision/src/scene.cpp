@@ -13,6 +13,20 @@
 #include "scene_impl.h"
 
 namespace dowel {
+namespace {
+
+/// Bodies whose last check is remembered; more that take turns are asked afresh.
+constexpr std::size_t kMaxMovers = 64;
+
+/// Candidates are found with room for this many moves like the last, up to this share of the
+/// mover's size.
+constexpr double kStepsOfRoom = 16.0;
+constexpr double kSizesOfRoom = 0.5;
+
+/// Added to each step of a way: rounding of poses 100 m from the origin.
+constexpr double kWayRounding_mm = 1.0e-10;
+
+}  // namespace
 
 struct CollisionElement::State {
   Loader load;
@@ -66,8 +80,9 @@ BodyId CollisionScene::add(std::shared_ptr<const CollisionElement> element, cons
     impl_->free_ids.pop_back();
   }
   const Obb obb_W = transformed(X_WB, element->obb());
-  impl_->bodies[id.value] = {std::move(element), X_WB, obb_W, -1, false};
+  impl_->bodies[id.value] = {std::move(element), X_WB, obb_W, false};
   impl_->projection.insert(id.value, bounds(obb_W));
+  impl_->movers.clear();
   return id;
 }
 
@@ -75,6 +90,7 @@ void CollisionScene::remove(BodyId id) {
   impl_->body(id) = {};
   impl_->projection.remove(id.value);
   impl_->free_ids.push_back(id);
+  impl_->movers.clear();
   std::erase_if(impl_->reliefs, [id](const auto& entry) {
     return entry.first.first == id || entry.first.second == id;
   });
@@ -86,6 +102,7 @@ void CollisionScene::move(BodyId id, const Pose& X_WB) {
   body.obb_W = transformed(X_WB, body.element->obb());
   impl_->projection.remove(id.value);
   impl_->projection.insert(id.value, bounds(body.obb_W));
+  impl_->forget_all_but(id);
 }
 
 const Pose& CollisionScene::pose(BodyId id) const {
@@ -99,6 +116,7 @@ std::size_t CollisionScene::size() const {
 void CollisionScene::set_reliefs(BodyId first, BodyId second, std::vector<ThreadRelief> reliefs) {
   impl_->body(first);
   impl_->body(second);
+  impl_->movers.clear();
   impl_->reliefs.erase({second, first});
   if (reliefs.empty()) {
     impl_->reliefs.erase({first, second});
@@ -122,14 +140,120 @@ std::span<const ThreadRelief> CollisionScene::Impl::reliefs_in(BodyId a, BodyId 
 }
 
 PairVerdict CollisionScene::Impl::judge_bodies(BodyId a, const Pose& X_WA, BodyId b,
-                                               const QueryOptions& options) {
+                                               const QueryOptions& options, PairMemory& memory) {
+  const Body& body_a = bodies[a.value];
   const Body& body_b = bodies[b.value];
   const Pose X_BA = body_b.X_WB.inverse() * X_WA;
-  const ModelPair pair{bodies[a.value].element->model(), body_b.element->model(), X_BA,
+  const ModelPair pair{body_a.element->model(),
+                       body_b.element->model(),
+                       body_a.element->obb(),
+                       body_b.element->obb(),
+                       X_BA,
                        reliefs_in(a, b, X_BA)};
-  PairVerdict verdict = judge(pair, options, scratch, counters);
+  PairVerdict verdict = judge(pair, options, memory, scratch, counters);
   verdict.witness_W = body_b.X_WB * verdict.witness_W;
   return verdict;
+}
+
+CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pose& X_WB,
+                                                            const QueryOptions& options) {
+  auto known = std::ranges::find(movers, id, &Mover::id);
+  if (known == movers.end()) {
+    if (movers.size() < kMaxMovers) {
+      movers.emplace_back();
+      known = movers.end() - 1;
+    } else {
+      known = std::ranges::min_element(movers, {}, &Mover::last_use);
+    }
+    known->id = id;
+    known->candidates.clear();
+    known->listed_until = -1.0;
+  }
+  Mover& mover = *known;
+  mover.last_use = query_count;
+  const Obb& obb_B = body(id).element->obb();
+  double step_mm = 0.0;
+  if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes) {
+    mover.tolerance_mm = options.tolerance_mm;
+    mover.holes = options.holes;
+    mover.candidates.clear();
+    mover.listed_until = -1.0;
+  } else if (mover.listed_until >= 0.0) {
+    // No point is further from the box's centre than a corner; turned by an angle it moves by twice
+    // the sine of half of that.
+    const Eigen::Quaterniond turn = mover.X_WB.rotation().conjugate() * X_WB.rotation();
+    step_mm = (X_WB * obb_B.center - mover.X_WB * obb_B.center).norm() +
+              2.0 * turn.vec().norm() * obb_B.half_extents_mm.norm() + kWayRounding_mm;
+    mover.way_mm += step_mm;
+  }
+  mover.X_WB = X_WB;
+  if (mover.way_mm >= mover.listed_until) find_candidates(mover, step_mm);
+  return mover;
+}
+
+void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
+  const Obb& obb_B = body(mover.id).element->obb();
+  const double room_mm =
+      std::min(kStepsOfRoom * step_mm, kSizesOfRoom * obb_B.half_extents_mm.norm());
+  projection.query(bounds(transformed(mover.X_WB, obb_B)).padded(mover.tolerance_mm + room_mm),
+                   found);
+  std::swap(mover.candidates, old_candidates);
+  mover.candidates.clear();
+  auto old = old_candidates.begin();
+  for (const std::uint32_t other : found) {
+    if (other == mover.id.value) continue;
+    while (old != old_candidates.end() && old->id.value < other) ++old;
+    if (old != old_candidates.end() && old->id.value == other) {
+      mover.candidates.push_back(*old);
+      mover.candidates.back().clear_until -= mover.way_mm;
+    } else {
+      mover.candidates.push_back({BodyId{other}, -1, 0.0, {}});
+    }
+  }
+  mover.way_mm = 0.0;
+  mover.listed_until = room_mm;
+  mover.clear_until = 0.0;
+}
+
+bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
+  if (mover.way_mm < mover.clear_until) return true;
+  const Obb obb_W = transformed(mover.X_WB, body(mover.id).element->obb());
+  double clear_until = mover.listed_until;
+  for (Candidate& candidate : mover.candidates) {
+    const Body& other = bodies[candidate.id.value];
+    if (other.is_moving) {
+      clear_until = 0.0;  // who moves along may be another one next time
+      continue;
+    }
+    if (mover.way_mm < candidate.clear_until) {
+      clear_until = std::min(clear_until, candidate.clear_until);
+      continue;
+    }
+    ++counters.box_tests;
+    const BoxSeparation boxes = separate(obb_W, other.obb_W, options.tolerance_mm, candidate.plane);
+    candidate.plane = static_cast<std::int8_t>(boxes.plane);
+    double gap_mm = boxes.gap_mm;
+    if (boxes.plane < 0) {
+      const PairVerdict verdict =
+          judge_bodies(mover.id, mover.X_WB, candidate.id, options, candidate.memory);
+      gap_mm = verdict.gap_mm;
+      if (verdict.verdict != Verdict::Clear) {
+        clear_until = 0.0;
+        if (options.first_only && verdict.verdict == Verdict::Interference) verdicts.clear();
+        verdicts.push_back({mover.id, candidate.id, verdict});
+        if (options.first_only && verdict.verdict == Verdict::Interference) return false;
+        continue;
+      }
+    }
+    candidate.clear_until = mover.way_mm + gap_mm - options.tolerance_mm;
+    clear_until = std::min(clear_until, candidate.clear_until);
+  }
+  mover.clear_until = clear_until;
+  return true;
+}
+
+void CollisionScene::Impl::forget_all_but(BodyId id) {
+  std::erase_if(movers, [id](const Mover& mover) { return mover.id != id; });
 }
 
 namespace {
@@ -140,33 +264,19 @@ void expect_valid(const QueryOptions& options) {
 
 }  // namespace
 
-std::vector<BodyVerdict> CollisionScene::check(std::span<const BodyId> moving,
-                                               std::span<const Pose> poses,
-                                               const QueryOptions& options) {
+std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> moving,
+                                                   std::span<const Pose> poses,
+                                                   const QueryOptions& options) {
   expect_valid(options);
   DOWEL_EXPECTS(moving.size() == poses.size());
-  std::vector<BodyVerdict> result;
+  impl_->verdicts.clear();
+  ++impl_->query_count;
   const Impl::MovingMark mark(*impl_, moving);
   for (std::size_t i = 0; i < moving.size(); ++i) {
-    const Obb obb_W = transformed(poses[i], impl_->body(moving[i]).element->obb());
-    impl_->projection.query(bounds(obb_W).padded(options.tolerance_mm), impl_->found);
-    for (const std::uint32_t other : impl_->found) {
-      Impl::Body& body = impl_->bodies[other];
-      if (body.is_moving) continue;
-      ++impl_->counters.box_tests;
-      const BoxSeparation separation =
-          separate(obb_W, body.obb_W, options.tolerance_mm, body.last_plane);
-      body.last_plane = static_cast<std::int8_t>(separation.plane);
-      if (separation.plane >= 0) continue;
-      const PairVerdict verdict = impl_->judge_bodies(moving[i], poses[i], BodyId{other}, options);
-      if (verdict.verdict == Verdict::Clear) continue;
-      if (options.first_only && verdict.verdict == Verdict::Interference) {
-        return {{moving[i], BodyId{other}, verdict}};
-      }
-      result.push_back({moving[i], BodyId{other}, verdict});
-    }
+    Impl::Mover& mover = impl_->mover_at(moving[i], poses[i], options);
+    if (!impl_->check_mover(mover, options)) break;
   }
-  return result;
+  return impl_->verdicts;
 }
 
 std::vector<BodyVerdict> CollisionScene::check_all(const QueryOptions& options) {
@@ -183,7 +293,9 @@ std::vector<BodyVerdict> CollisionScene::check_all(const QueryOptions& options) 
       if (separate(body.obb_W, impl_->bodies[other].obb_W, options.tolerance_mm).plane >= 0) {
         continue;
       }
-      const PairVerdict verdict = impl_->judge_bodies(BodyId{i}, body.X_WB, BodyId{other}, options);
+      PairMemory memory;
+      const PairVerdict verdict =
+          impl_->judge_bodies(BodyId{i}, body.X_WB, BodyId{other}, options, memory);
       if (verdict.verdict == Verdict::Clear) continue;
       result.push_back({BodyId{i}, BodyId{other}, verdict});
       if (options.first_only && verdict.verdict == Verdict::Interference) return result;
@@ -202,6 +314,9 @@ void CollisionScene::reset_counters() {
 std::size_t CollisionScene::memory_bytes() const {
   std::size_t bytes = sizeof(Impl) + impl_->bodies.capacity() * sizeof(Impl::Body) +
                       impl_->projection.memory_bytes();
+  for (const Impl::Mover& mover : impl_->movers) {
+    bytes += sizeof(mover) + mover.candidates.capacity() * sizeof(Impl::Candidate);
+  }
   std::vector<const CollisionElement*> elements;
   for (const Impl::Body& body : impl_->bodies) {
     if (body.element != nullptr) elements.push_back(body.element.get());

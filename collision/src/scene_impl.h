@@ -17,8 +17,29 @@ struct CollisionScene::Impl {
     std::shared_ptr<const CollisionElement> element;  // null: a free id
     Pose X_WB;
     Obb obb_W;
-    std::int8_t last_plane = -1;  // that kept the moving box off this one
-    bool is_moving = false;       // during a query
+    bool is_moving = false;  // during a query
+  };
+
+  /// A placed body that a mover may meet, and what is known of the two.
+  struct Candidate {
+    BodyId id;
+    std::int8_t plane = -1;    // that kept their boxes apart last
+    double clear_until = 0.0;  // the two are clear while the mover's way is below this
+    PairMemory memory;
+  };
+
+  /// What is remembered of a body from one check to the next. Its way is a bound of how far any
+  /// point of it has moved since the candidates were found.
+  struct Mover {
+    BodyId id;
+    Pose X_WB;
+    double way_mm = 0.0;
+    double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
+    double clear_until = -1.0;   // nothing at all
+    double tolerance_mm = 0.0;   // of the queries that this was found for
+    HoleMode holes = HoleMode::Exact;
+    std::uint64_t last_use = 0;
+    std::vector<Candidate> candidates;  // by id
   };
 
   /// Marks the moving bodies for the time of a query.
@@ -41,7 +62,20 @@ struct CollisionScene::Impl {
   Body& body(BodyId id);
 
   /// Verdict on body a placed at X_WA and body b where it stands; witness in the world.
-  PairVerdict judge_bodies(BodyId a, const Pose& X_WA, BodyId b, const QueryOptions& options);
+  PairVerdict judge_bodies(BodyId a, const Pose& X_WA, BodyId b, const QueryOptions& options,
+                           PairMemory& memory);
+
+  /// What is remembered of the body, brought to the pose that it is asked about.
+  Mover& mover_at(BodyId id, const Pose& X_WB, const QueryOptions& options);
+
+  /// Finds the mover's candidates anew, with room for the moves to come.
+  void find_candidates(Mover& mover, double step_mm);
+
+  /// Appends the verdicts of one mover to `verdicts`; false once `first_only` ends the query.
+  bool check_mover(Mover& mover, const QueryOptions& options);
+
+  /// Forgets what is remembered of all bodies but `id`, whose surroundings are as they were.
+  void forget_all_but(BodyId id);
 
   /// Reliefs of the pair in the frame of b; valid until the next call.
   std::span<const ThreadRelief> reliefs_in(BodyId a, BodyId b, const Pose& X_BA);
@@ -53,6 +87,10 @@ struct CollisionScene::Impl {
   QueryCounters counters;
 
   std::vector<std::uint32_t> found;
+  std::vector<Mover> movers;
+  std::uint64_t query_count = 0;
+  std::vector<BodyVerdict> verdicts;
+  std::vector<Candidate> old_candidates;
   std::vector<ThreadRelief> relief_scratch;
   NarrowScratch scratch;
 };

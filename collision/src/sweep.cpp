@@ -59,8 +59,9 @@ SweepResult CollisionScene::sweep(std::span<const BodyId> moving, std::span<cons
       if (impl_->bodies[other].is_moving) continue;
       const BodyId with{other};
       const Obb& obb_W = impl_->bodies[other].obb_W;
+      PairMemory memory;
       const auto judge_at = [&](double time) {
-        return impl_->judge_bodies(moving[i], motion.at(time), with, options);
+        return impl_->judge_bodies(moving[i], motion.at(time), with, options, memory);
       };
       double time = 0.0;
       double free_time = 0.0;
@@ -73,7 +74,12 @@ SweepResult CollisionScene::sweep(std::span<const BodyId> moving, std::span<cons
         double step_mm = boxes.gap_mm;
         if (boxes.plane < 0) {
           const Pose X_BA = impl_->bodies[other].X_WB.inverse() * motion.at(time);
-          const ModelPair pair{element.model(), impl_->bodies[other].element->model(), X_BA, {}};
+          const ModelPair pair{element.model(),
+                               impl_->bodies[other].element->model(),
+                               element.obb(),
+                               impl_->bodies[other].element->obb(),
+                               X_BA,
+                               {}};
           const double left_mm = (result.time_of_impact - time) * motion.speed_mm;
           step_mm = gap_lower_bound_mm(pair, options.holes, left_mm + 2.0 * options.tolerance_mm,
                                        impl_->scratch, impl_->counters);

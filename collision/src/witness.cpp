@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <Eigen/LU>
 
@@ -15,6 +16,11 @@ constexpr double kDepthSlack = 1e-4;
 
 /// Added to the normal matrix: two opposite planes then share the miss instead of dividing by zero.
 constexpr double kRegularisation = 1e-9;
+
+/// A witness is made deeper by these factors, again and again up to so many times each.
+constexpr double kCoarseGrowth = 8.0;
+constexpr double kFineGrowth = 1.05;
+constexpr int kDeepenings = 8;
 
 constexpr std::size_t kMaxConstraints = 4;
 constexpr int kRounds = 8;
@@ -86,8 +92,17 @@ class Search {
   };
   /// Depth of `p` in one solid and the constraint that its nearest boundary stands for.
   Reading read(Side side, const Eigen::Vector3d& p) const {
-    const Eigen::Vector3d asked = side == Side::A ? X_AB_ * p : p;
-    const NearestPoint near = model(side).nearest(asked);
+    return reading(side, p, model(side).nearest(side == Side::A ? X_AB_ * p : p));
+  }
+
+  /// The same where the boundary is too near for a witness; nothing elsewhere.
+  std::optional<Reading> read_if_near(Side side, const Eigen::Vector3d& p) const {
+    const auto near = model(side).nearest_within(side == Side::A ? X_AB_ * p : p, enough_mm());
+    if (!near) return std::nullopt;
+    return reading(side, p, *near);
+  }
+
+  Reading reading(Side side, const Eigen::Vector3d& p, const NearestPoint& near) const {
     const Face& face = model(side).face(model(side).triangles()[near.triangle].face);
     Constraint constraint{side, near.on_face && is_exact(face) ? &face : nullptr,
                           side == Side::A ? pair_.X_BA * near.point : near.point,
@@ -151,13 +166,24 @@ std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double 
     if (!search.settle(p) || (p - start).norm() > reach_mm || search.in_relief(p)) {
       return std::nullopt;
     }
-    const Search::Reading in_a = search.read(Side::A, p);
-    const Search::Reading in_b = search.read(Side::B, p);
-    const double depth = std::min(in_a.depth_mm, in_b.depth_mm);
-    if (depth >= search.enough_mm()) return Witness{p, depth};
+    // Most starts are refuted by a boundary near by, which is found at little cost.
     bool learned = false;
-    if (in_a.depth_mm < search.enough_mm()) learned = search.add(in_a.nearest) || learned;
-    if (in_b.depth_mm < search.enough_mm()) learned = search.add(in_b.nearest) || learned;
+    bool is_near = false;
+    for (const Side side : {Side::A, Side::B}) {
+      if (const auto near = search.read_if_near(side, p)) {
+        is_near = true;
+        learned = search.add(near->nearest) || learned;
+      }
+    }
+    if (!is_near) {
+      const Search::Reading in_a = search.read(Side::A, p);
+      const Search::Reading in_b = search.read(Side::B, p);
+      const bool is_in_a = in_a.depth_mm >= search.enough_mm();
+      const bool is_in_b = in_b.depth_mm >= search.enough_mm();
+      if (is_in_a && is_in_b) return Witness{p, in_a.depth_mm, in_b.depth_mm};
+      if (!is_in_a) learned = search.add(in_a.nearest) || learned;
+      if (!is_in_b) learned = search.add(in_b.nearest) || learned;
+    }
     if (!learned) return std::nullopt;
   }
   return std::nullopt;
@@ -174,24 +200,36 @@ std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d
   return run(search, start_B, reach_mm);
 }
 
+std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                    double depth_mm, double reach_mm) {
+  Search search(pair, depth_mm);
+  return run(search, start_B, reach_mm);
+}
+
 std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d& point_B,
                                     double depth_mm) {
   const Search search(pair, depth_mm);
   if (search.in_relief(point_B)) return std::nullopt;
-  const double depth =
-      std::min(search.read(Side::A, point_B).depth_mm, search.read(Side::B, point_B).depth_mm);
-  if (depth < search.enough_mm()) return std::nullopt;
-  return Witness{point_B, depth};
+  for (const Side side : {Side::A, Side::B}) {
+    if (search.read_if_near(side, point_B)) return std::nullopt;
+  }
+  const double depth_a = search.read(Side::A, point_B).depth_mm;
+  if (depth_a < search.enough_mm()) return std::nullopt;
+  const double depth_b = search.read(Side::B, point_B).depth_mm;
+  if (depth_b < search.enough_mm()) return std::nullopt;
+  return Witness{point_B, depth_a, depth_b};
 }
 
-Witness deepen(const ModelPair& pair, const Witness& witness) {
+Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly) {
   Witness best = witness;
-  for (double growth = 2.0; growth > 1.05; growth = 1.0 + 0.5 * (growth - 1.0)) {
-    for (int step = 0; step < 24; ++step) {
-      Search search(pair, growth * best.depth_mm);
+  const double least_growth = thoroughly ? kFineGrowth : kCoarseGrowth;
+  for (double growth = kCoarseGrowth; growth >= least_growth; growth = std::sqrt(growth)) {
+    for (int step = 0; step < kDeepenings; ++step) {
+      const double depth_mm = std::min(best.depth_a_mm, best.depth_b_mm);
+      Search search(pair, growth * depth_mm);
       search.add(search.read(Side::A, best.point_B).nearest);
       search.add(search.read(Side::B, best.point_B).nearest);
-      const auto deeper = run(search, best.point_B, 8.0 * growth * best.depth_mm);
+      const auto deeper = run(search, best.point_B, 8.0 * growth * depth_mm);
       if (!deeper) break;
       best = *deeper;
     }

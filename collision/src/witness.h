@@ -10,7 +10,8 @@ namespace dowel {
 
 struct Witness {
   Eigen::Vector3d point_B;
-  double depth_mm;  ///< smaller of its depths in the two solids
+  double depth_a_mm;  ///< in each solid
+  double depth_b_mm;
 };
 
 /// A point at least `depth_mm` (less one part in 10^4) deep in both exact solids, sought from
@@ -25,11 +26,16 @@ std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d
                                     std::uint32_t triangle_a, std::uint32_t triangle_b,
                                     double depth_mm, double reach_mm);
 
+/// The same from a start that is known to have been a witness in another pose.
+std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                    double depth_mm, double reach_mm);
+
 /// The depth of the point in both solids, as it stands.
 std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d& point_B,
                                     double depth_mm);
 
-/// Makes a witness deeper while that is easy: a better lower bound of the depth.
-Witness deepen(const ModelPair& pair, const Witness& witness);
+/// Makes a witness deeper: a better lower bound of the depth, and a ball that outlasts more moves.
+/// In coarse steps while that is easy, or `thoroughly`.
+Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly);
 
 }  // namespace dowel

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "dowel/collision/axis_profile.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/faceted_solid.h"
 
@@ -36,6 +38,8 @@ struct ModelTriangle {
   /// How far the exact boundary can stand off this facet: 0 for a plane that ends in straight
   /// edges, and for a face that is known by its facets alone.
   double slack_mm = 0.0;
+  /// The same along the normal alone: 0 for every plane, whose rims are curved in the plane.
+  double normal_slack_mm = 0.0;
 };
 
 /// A straight edge of a facet that stands for a curved rim.
@@ -70,6 +74,7 @@ class CollisionModel {
   std::span<const BvhNode> nodes() const noexcept { return nodes_; }
   std::span<const ModelTriangle> triangles() const noexcept { return triangles_; }
   const Face& face(std::uint32_t index) const { return solid_->faces[index]; }
+  std::uint32_t face_count() const { return static_cast<std::uint32_t>(solid_->faces.size()); }
 
   /// Chords of the same face between which and their arcs a part of triangle `index` may lie: there
   /// it overhangs the exact face. Among them can be chords of other triangles.
@@ -81,6 +86,9 @@ class CollisionModel {
   /// Nearest place of the boundary. Inside or outside follows from the side of the nearest face, or
   /// from the edge's shape; at a corner from the parity of a ray.
   NearestPoint nearest(const Eigen::Vector3d& point) const;
+
+  /// The same where it is nearer than `radius_mm`; nothing elsewhere. Cheap for small radii.
+  std::optional<NearestPoint> nearest_within(const Eigen::Vector3d& point, double radius_mm) const;
 
   /// The same by looking at every triangle. Reference for tests.
   NearestPoint nearest_brute_force(const Eigen::Vector3d& point) const;
@@ -100,6 +108,12 @@ class CollisionModel {
   };
   std::span<const InnerPoint> inner_points() const noexcept { return inner_points_; }
 
+  /// Profiles about the axes of the cylinders.
+  const AxisProfiles& profiles() const noexcept { return profiles_; }
+
+  /// The planes of the largest planar faces, each once, the largest first.
+  std::span<const PlaneSurface> main_planes() const noexcept { return main_planes_; }
+
   /// Largest slack of the triangles, and largest error of faces known by their facets alone.
   double max_slack_mm() const noexcept { return max_slack_mm_; }
   double max_unknown_mm() const noexcept { return max_unknown_mm_; }
@@ -111,6 +125,7 @@ class CollisionModel {
   void build_tree();
   void find_overhangs();
   void find_inner_points();
+  void find_main_planes();
 
   std::shared_ptr<const FacetedSolid> solid_;
   std::vector<BvhNode> nodes_;
@@ -119,6 +134,8 @@ class CollisionModel {
   std::vector<Chord> overhangs_;             // by triangle, from overhang_begin_ on
   std::vector<std::uint32_t> overhang_begin_;
   std::vector<InnerPoint> inner_points_;
+  std::vector<PlaneSurface> main_planes_;
+  AxisProfiles profiles_;
   double max_slack_mm_ = 0.0;
   double max_unknown_mm_ = 0.0;
 };

@@ -90,9 +90,13 @@ class CollisionScene {
 
   /// Bodies that are not clear of the moving ones, were these placed at `poses` (one for each);
   /// sorted by moving body, then by the other. Moving bodies are not checked against each other.
-  /// The scene is not changed.
-  std::vector<BodyVerdict> check(std::span<const BodyId> moving, std::span<const Pose> poses,
-                                 const QueryOptions& options);
+  /// The scene is not changed. The result is valid until the next query.
+  ///
+  /// Made for moves that follow each other: what the last check of a body found out (who is near,
+  /// how far, which plane, facets or ball told so) is tried first, and a move that is shorter than
+  /// the known gap costs no test. Allocates nothing once it has seen its largest query.
+  std::span<const BodyVerdict> check(std::span<const BodyId> moving, std::span<const Pose> poses,
+                                     const QueryOptions& options);
 
   /// All pairs of the scene that are not clear, `moving < with`, sorted.
   std::vector<BodyVerdict> check_all(const QueryOptions& options);
