@@ -485,7 +485,7 @@ Kit kit_of(bool has_slots, bool has_full_risers, std::uint32_t columns, const De
                                  testing::hole_grid(2, 1, 40.0, kClearanceHole_mm), h));
   kit.adaptor = share(drilled_plate("adaptor", {60.0, 60.0, 15.0},
                                     testing::hole_grid(2, 2, 30.0, kClearanceHole_mm), h));
-  kit.strap = share(drilled_plate("strap", {30.0, 90.0, 16.0},
+  kit.strap = share(drilled_plate("strap", {30.0, 80.0, 16.0},
                                   testing::hole_grid(1, 3, 25.0, kClearanceHole_mm), h));
   kit.post = share(turned("post",
                           {{0.0, 0.0},
@@ -588,10 +588,10 @@ Scenario assemble(const Layout& layout, const Density& density) {
       case 1:
         put(kit.riser, at(x, y, 0.0));
         put(kit.riser, at(x, y, 40.0));
-        put(kit.strap, at(x, y - 5.0, 80.0));
-        put(kit.stud, at(x, y - 5.0, 60.0));
-        put(kit.washer, at(x, y - 5.0, 96.0));
-        put(kit.nut, at(x, y - 5.0, 98.5));
+        put(kit.strap, at(x, y, 80.0));
+        put(kit.stud, at(x, y, 60.0));
+        put(kit.washer, at(x, y, 96.0));
+        put(kit.nut, at(x, y, 98.5));
         break;
       case 2: {
         put(kit.foot, at(x, y, 0.0));

@@ -1,0 +1,96 @@
+#include <array>
+#include <map>
+#include <vector>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Rigid_triangle_mesh_collision_detection.h>
+#include <CGAL/Surface_mesh.h>
+
+#include "checker.h"
+
+namespace dowel::bench {
+
+namespace {
+
+/// Exact predicates on AABB trees, one a mesh, for elements whose boxes overlap.
+class CgalChecker : public Checker {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+  using Detection = CGAL::Rigid_triangle_mesh_collision_detection<Mesh>;
+
+  struct Shared {
+    Mesh mesh;
+    std::unique_ptr<Detection::AABB_tree> tree;
+  };
+
+ public:
+  void prepare(const ElementPtr& element) override { (void)shared(element); }
+
+  void add(const Placed& placed) override {
+    const Shared& found = shared(placed.element);
+    ids_.push_back(detection_.add_mesh(*found.tree, found.mesh));
+    boxes_W_.push_back(placed.box_W);
+    place(ids_.back(), placed.X_WE);
+  }
+
+  void set_moving(const ElementPtr& element) override {
+    const Shared& found = shared(element);
+    moving_ = detection_.add_mesh(*found.tree, found.mesh);
+    moving_box_ = {element->box.center(), Eigen::Matrix3d::Identity(), 0.5 * element->box.size()};
+  }
+
+  Answer check(const Pose& X_WM) override {
+    place(moving_, X_WM);
+    const Aabb box_W = bounds(transformed(X_WM, moving_box_)).padded(kRounding_mm);
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      if (!boxes_W_[i].overlaps(box_W)) continue;
+      if (!detection_.get_all_intersections(moving_, std::array{ids_[i]}).empty()) {
+        return {true, {}};
+      }
+    }
+    return {};
+  }
+
+ private:
+  static constexpr double kRounding_mm = 1.0e-6;  // of turned boxes, generously
+
+  void place(std::size_t id, const Pose& pose) {
+    const Eigen::Matrix3d r = pose.rotation_matrix();
+    const Eigen::Vector3d& p = pose.translation();
+    detection_.set_transformation(
+        id, CGAL::Aff_transformation_3<Kernel>(r(0, 0), r(0, 1), r(0, 2), p.x(), r(1, 0), r(1, 1),
+                                               r(1, 2), p.y(), r(2, 0), r(2, 1), r(2, 2), p.z()));
+  }
+
+  const Shared& shared(const ElementPtr& element) {
+    Shared& found = meshes_[element.get()];
+    if (found.tree == nullptr) {
+      std::vector<Mesh::Vertex_index> vertices;
+      for (const Eigen::Vector3d& p : element->solid->vertices) {
+        vertices.push_back(found.mesh.add_vertex({p.x(), p.y(), p.z()}));
+      }
+      for (const Triangle& t : element->solid->triangles) {
+        found.mesh.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+      }
+      const auto [begin, end] = faces(found.mesh);
+      found.tree = std::make_unique<Detection::AABB_tree>(begin, end, found.mesh);
+      found.tree->build();
+    }
+    return found;
+  }
+
+  std::map<const Element*, Shared> meshes_;
+  Detection detection_;
+  std::vector<std::size_t> ids_;
+  std::vector<Aabb> boxes_W_;
+  Obb moving_box_;
+  std::size_t moving_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Checker> make_cgal() {
+  return std::make_unique<CgalChecker>();
+}
+
+}  // namespace dowel::bench
