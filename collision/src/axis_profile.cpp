@@ -377,6 +377,77 @@ bool in_relief(const AxisProfile& bore, std::span<const ThreadRelief> reliefs, c
   });
 }
 
+/// Heights along the bore that a step of the shaft reaches, on its way of `travel_mm`.
+Stretch reach_of(const RelativeAxis& axis, const ProfileStep& a, double travel_mm) {
+  const auto [z0, z1] = std::minmax({axis.at(a.from_mm), axis.at(a.to_mm)});
+  const double tilt = a.radius_mm * axis.sine;
+  return {z0 + std::min(travel_mm, 0.0) - tilt, z1 + std::max(travel_mm, 0.0) + tilt};
+}
+
+/// Distance of two steps that share no height: `both` is what lies between them, turned round.
+double end_gap(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b,
+               const Stretch& both) {
+  const double axial = both.from_mm - both.to_mm;
+  const double miss = std::max(axis.miss(a.from_mm).norm(), axis.miss(a.to_mm).norm());
+  const double radial = b.radius_mm - a.radius_mm - miss;
+  return radial > 0.0 ? std::hypot(axial, radial) : axial;
+}
+
+/// What two steps leave between them over the heights that they share.
+struct SideGap {
+  double gap_mm = kInfinity;                       ///< negative: the shaft passes the bore's radius
+  double height_mm = 0.0;                          ///< where that is, along the bore
+  Eigen::Vector3d wall = Eigen::Vector3d::Zero();  ///< from the bore's axis to its wall there
+};
+
+SideGap side_gap(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b,
+                 const Stretch& both, double travel_mm) {
+  // Places of the shaft's axis that this stretch of the bore can see.
+  const double tilt = a.radius_mm * axis.sine;
+  const double low = (both.from_mm - std::max(travel_mm, 0.0) - tilt - axis.height) / axis.cosine;
+  const double high = (both.to_mm - std::min(travel_mm, 0.0) + tilt - axis.height) / axis.cosine;
+  const double s0 = std::max(std::min(low, high), a.from_mm);
+  const double s1 = std::min(std::max(low, high), a.to_mm);
+  const Eigen::Vector3d miss0 = axis.miss(s0);
+  const Eigen::Vector3d miss1 = axis.miss(s1);
+  const bool is_at_s0 = miss0.squaredNorm() >= miss1.squaredNorm();
+  const Eigen::Vector3d& miss = is_at_s0 ? miss0 : miss1;
+  const double miss_mm = miss.norm();
+  SideGap result;
+  result.gap_mm = b.radius_mm - a.radius_mm - miss_mm;
+  result.wall = b.radius_mm * (miss_mm > kEndSlack_mm ? Eigen::Vector3d(miss / miss_mm)
+                                                      : axis.axis.unitOrthogonal());
+  result.height_mm = std::clamp(axis.at(is_at_s0 ? s0 : s1), both.from_mm, both.to_mm);
+  return result;
+}
+
+/// Heights at which the shaft passes the bore's radius. A ball of the tolerance's diameter in both
+/// bodies needs that over its own height, and by its diameter where its middle is.
+class Overlap {
+ public:
+  explicit Overlap(double tolerance_mm) : tolerance_mm_(tolerance_mm) {}
+
+  /// Adds a stretch; ascending.
+  void add(const Stretch& stretch, double by_mm) {
+    if (stretch.from_mm > run_.to_mm + kEndSlack_mm) {
+      run_.from_mm = stretch.from_mm;
+      is_deep_ = false;
+    }
+    run_.from_mm = std::min(run_.from_mm, stretch.from_mm);
+    run_.to_mm = std::max(run_.to_mm, stretch.to_mm);
+    is_deep_ = is_deep_ || by_mm >= tolerance_mm_;
+    if (is_deep_ && run_.to_mm - run_.from_mm >= tolerance_mm_) is_free_ = false;
+  }
+
+  bool is_free() const { return is_free_; }
+
+ private:
+  double tolerance_mm_;
+  Stretch run_{0.0, -kInfinity};
+  bool is_deep_ = false;
+  bool is_free_ = true;
+};
+
 }  // namespace
 
 std::size_t AxisProfiles::memory_bytes() const {
@@ -394,71 +465,40 @@ AxisProfiles find_axis_profiles(const CollisionModel& model) {
 }
 
 Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, double tolerance_mm,
-        std::span<const ThreadRelief> reliefs_V) {
+        std::span<const ThreadRelief> reliefs_V, double travel_mm) {
   const RelativeAxis axis(shaft, bore, X_VS);
   Fit result;
   if (axis.sine > kMaxTilt) return result;
   const bool turned = axis.cosine < 0.0;
-  result.gap_mm = kInfinity;
-  double worst_miss = kInfinity;  // of the radial gaps
-  // A run of heights where the shaft passes the bore's radius at all (weak), and whether it does so
-  // by the tolerance somewhere (strong): a ball needs both, over its own height.
-  double run_from = 0.0;
-  double run_to = -kInfinity;
-  bool run_is_strong = false;
-  bool is_free = true;
+  double least_gap = kInfinity;
+  SideGap least_side;
+  Overlap overlap(tolerance_mm);
   const std::size_t count = shaft.steps.size();
   for (std::size_t n = 0; n < count; ++n) {
     const ProfileStep& a = shaft.steps[turned ? count - 1 - n : n];
-    const auto [z0, z1] = std::minmax({axis.at(a.from_mm), axis.at(a.to_mm)});
-    const Stretch reach{z0 - a.radius_mm * axis.sine, z1 + a.radius_mm * axis.sine};
-    const double largest_miss = std::max(axis.miss(a.from_mm).norm(), axis.miss(a.to_mm).norm());
+    const Stretch reach = reach_of(axis, a, travel_mm);
     for (const ProfileStep& b : bore.steps) {
       const Stretch both{std::max(reach.from_mm, b.from_mm), std::min(reach.to_mm, b.to_mm)};
       if (both.from_mm >= both.to_mm) {
-        const double axial = both.from_mm - both.to_mm;
-        const double radial = b.radius_mm - a.radius_mm - largest_miss;
-        result.gap_mm = std::min(result.gap_mm, radial > 0.0 ? std::hypot(axial, radial) : axial);
+        least_gap = std::min(least_gap, end_gap(axis, a, b, both));
         continue;
       }
-      // Places of the shaft's axis that this stretch of the bore can see.
-      const double tilt = a.radius_mm * axis.sine;
-      double s0 = (both.from_mm - tilt - axis.height) / axis.cosine;
-      double s1 = (both.to_mm + tilt - axis.height) / axis.cosine;
-      if (s0 > s1) std::swap(s0, s1);
-      s0 = std::max(s0, a.from_mm);
-      s1 = std::min(s1, a.to_mm);
-      const Eigen::Vector3d miss0 = axis.miss(s0);
-      const Eigen::Vector3d miss1 = axis.miss(s1);
-      const bool at_s0 = miss0.squaredNorm() >= miss1.squaredNorm();
-      const double miss = at_s0 ? miss0.norm() : miss1.norm();
-      const double radial = b.radius_mm - a.radius_mm - miss;
-      if (radial < 0.0 && in_relief(bore, reliefs_V, both, a.radius_mm + miss)) continue;
-      result.gap_mm = std::min(result.gap_mm, radial);
-      if (radial < worst_miss) {
-        worst_miss = radial;
+      const SideGap side = side_gap(axis, a, b, both, travel_mm);
+      if (side.gap_mm < least_side.gap_mm) {
+        least_side = side;
         result.gap_is_met = a.is_round && b.is_round;
-        const Eigen::Vector3d& towards = at_s0 ? miss0 : miss1;
-        const Eigen::Vector3d side =
-            miss > kEndSlack_mm ? Eigen::Vector3d(towards / miss) : axis.axis.unitOrthogonal();
-        const double inset = std::min(0.25 * (both.to_mm - both.from_mm), tolerance_mm);
-        const double z =
-            std::clamp(axis.at(at_s0 ? s0 : s1), both.from_mm + inset, both.to_mm - inset);
-        result.place_V = bore.origin + z * axis.axis + b.radius_mm * side;
       }
-      if (radial >= 0.0) continue;
-      if (both.from_mm > run_to + kEndSlack_mm) {
-        run_from = both.from_mm;
-        run_is_strong = false;
+      if (side.gap_mm < 0.0 && !in_relief(bore, reliefs_V, both, b.radius_mm - side.gap_mm)) {
+        overlap.add(both, -side.gap_mm);
       }
-      run_from = std::min(run_from, both.from_mm);
-      run_to = std::max(run_to, both.to_mm);
-      run_is_strong = run_is_strong || -radial >= tolerance_mm;
-      if (run_is_strong && run_to - run_from >= tolerance_mm) is_free = false;
     }
   }
-  result.is_free = is_free && std::isfinite(result.gap_mm);
-  result.gap_is_met = result.gap_is_met && worst_miss == result.gap_mm;
+  result.is_free = overlap.is_free() && shaft.steps.size() * bore.steps.size() > 0;
+  result.gap_mm = std::min(least_gap, least_side.gap_mm);
+  result.gap_is_met = result.gap_is_met && least_side.gap_mm <= least_gap;
+  if (std::isfinite(least_side.gap_mm)) {
+    result.place_V = bore.origin + least_side.height_mm * axis.axis + least_side.wall;
+  }
   return result;
 }
 

@@ -9,6 +9,7 @@
 #include "dowel/collision/axis_profile.h"
 #include "dowel/collision/box_separation.h"
 #include "exact_face.h"
+#include "kept_off.h"
 #include "triangle_pair.h"
 #include "witness.h"
 
@@ -17,9 +18,6 @@ namespace {
 
 /// A share of the tolerance that certificates keep for rounding.
 constexpr double kSafety = 1.0e-6;
-
-/// Facets end at a plane where they pass it by no more than this: rounding of placed coordinates.
-constexpr double kPlaneSlack_mm = 1.0e-9;
 
 /// Fractions of a crossing segment at which a witness is sought.
 constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
@@ -35,9 +33,6 @@ constexpr double kProjectionGain = 1.0e-3;
 
 /// Cosine above which two facets are parallel enough to look for what they have in common.
 constexpr double kOpposite = 0.999;
-
-/// Most faces' planes of a body that are asked whether they keep the other body off.
-constexpr std::size_t kMaxPlanes = 8;
 
 /// Boxes of a tree of A, in the frame of A, against boxes of B in the frame of B.
 class NodeSeparation {
@@ -165,36 +160,12 @@ Corners shifted(const Corners& corners, const Eigen::Vector3d& by) {
   return {corners[0] + by, corners[1] + by, corners[2] + by};
 }
 
-/// Planes of one body's faces that have all of the other body before them, but for less than the
-/// tolerance: no ball of that diameter that fits into the other body is behind them, and so nothing
-/// behind them can take part in an interference.
-class KeptOff {
- public:
-  /// `X_OB`: pose of the body in the other one.
-  KeptOff(const CollisionModel& body, const Obb& other, const Pose& X_OB, double tolerance_mm) {
-    for (const PlaneSurface& plane : body.main_planes()) {
-      if (count_ == kMaxPlanes) break;
-      const Eigen::Vector3d normal_O = X_OB.rotation() * plane.normal;
-      const double center = normal_O.dot(other.center - X_OB * plane.origin);
-      const double reach =
-          (other.axes.transpose() * normal_O).cwiseAbs().dot(other.half_extents_mm);
-      if (center - reach > -tolerance_mm * (1.0 - kSafety)) planes_[count_++] = &plane;
-    }
-  }
-
-  bool contains(const BvhNode& node) const {
-    for (std::size_t i = 0; i < count_; ++i) {
-      const Eigen::Vector3d center = 0.5 * (node.min + node.max) - planes_[i]->origin;
-      const double reach = planes_[i]->normal.cwiseAbs().dot(0.5 * (node.max - node.min));
-      if (planes_[i]->normal.dot(center) + reach <= kPlaneSlack_mm) return true;
-    }
-    return false;
-  }
-
- private:
-  std::array<const PlaneSurface*, kMaxPlanes> planes_{};
-  std::size_t count_ = 0;
-};
+/// Lower bound of a box's height before a plane that is placed beside it.
+double height_of(const Obb& box, const Pose& X_OP, const PlaneSurface& plane) {
+  const Eigen::Vector3d normal_O = X_OP.rotation() * plane.normal;
+  const double reach = (box.axes.transpose() * normal_O).cwiseAbs().dot(box.half_extents_mm);
+  return normal_O.dot(box.center - X_OP * plane.origin) - reach;
+}
 
 /// Collects the evidence on one pair.
 class Judge {
@@ -434,8 +405,12 @@ class Judge {
                 memory_.crossing_b)) {
       return;
     }
-    const KeptOff kept_off_a(pair_.a, pair_.obb_b, pair_.X_BA, options_.tolerance_mm);
-    const KeptOff kept_off_b(pair_.b, pair_.obb_a, X_AB_, options_.tolerance_mm);
+    const KeptOff kept_off_a(pair_.a, options_.tolerance_mm, [&](const PlaneSurface& plane) {
+      return height_of(pair_.obb_b, pair_.X_BA, plane);
+    });
+    const KeptOff kept_off_b(pair_.b, options_.tolerance_mm, [&](const PlaneSurface& plane) {
+      return height_of(pair_.obb_a, X_AB_, plane);
+    });
     for_each_leaf_pair(
         pair_, scratch_, counters_,
         [&](const BvhNode& a, const BvhNode& b) {
@@ -550,10 +525,14 @@ PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory
 }
 
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
+                          const KeptOff& kept_off_a, const KeptOff& kept_off_b,
                           NarrowScratch& scratch, QueryCounters& counters) {
   double best = cap_mm;
   for_each_leaf_pair(
-      pair, scratch, counters, [](const BvhNode&, const BvhNode&) { return true; },
+      pair, scratch, counters,
+      [&](const BvhNode& a, const BvhNode& b) {
+        return !kept_off_a.contains(a) && !kept_off_b.contains(b);
+      },
       [&](double gap) { return gap < best && best > 0.0; },
       [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
         for (const ModelTriangle& a : pair.a.triangles().subspan(leaf_a.first, leaf_a.count)) {

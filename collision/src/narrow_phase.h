@@ -15,6 +15,8 @@
 
 namespace dowel {
 
+class KeptOff;
+
 /// Work space of the narrow phase, kept between queries so that they allocate nothing.
 struct NarrowScratch {
   struct NodePair {
@@ -79,8 +81,10 @@ struct PairMemory {
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters);
 
-/// Lower bound of the distance of the two solids, up to `cap_mm`; 0 where they touch or overlap.
+/// Lower bound of the distance of the two solids without what is kept off the other one, up to
+/// `cap_mm`; 0 where they touch or overlap.
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
+                          const KeptOff& kept_off_a, const KeptOff& kept_off_b,
                           NarrowScratch& scratch, QueryCounters& counters);
 
 }  // namespace dowel

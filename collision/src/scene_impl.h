@@ -42,6 +42,8 @@ struct CollisionScene::Impl {
     std::vector<Candidate> candidates;  // by id
   };
 
+  class PairSweep;
+
   /// Marks the moving bodies for the time of a query.
   class MovingMark {
    public:

@@ -56,13 +56,14 @@ struct Fit {
 };
 
 /// Judges the shaft at `X_VS` against the bore, each in its body's frame, at the tolerance.
-/// `reliefs_V`: threads that they may overlap in.
+/// `reliefs_V`: threads that they may overlap in. `travel_mm`: the shaft is judged for all places
+/// on the way this far along the bore's direction (or against it) at once.
 ///
 /// A point of the shaft's body at radius r about the shaft's axis has a radius of at most r plus
 /// the distance of the axes there about the bore's axis, and that distance is largest at one of the
 /// ends of a stretch: so the steps are compared without sampling, exactly for parallel axes and to
 /// second order in the tilt otherwise.
 Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, double tolerance_mm,
-        std::span<const ThreadRelief> reliefs_V);
+        std::span<const ThreadRelief> reliefs_V, double travel_mm = 0.0);
 
 }  // namespace dowel
