@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
 
-[[noreturn]] void refuse(const std::string& message) {
+[[noreturn]] void refuse_mate(const std::string& message) {
   throw Error(ErrorCode::InvalidInput, message);
 }
 
@@ -117,27 +117,30 @@ double sense_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& axis, c
                    const char* whose) {
   const double off_rad = std::atan2(normal.cross(axis).norm(), std::abs(normal.dot(axis)));
   if (off_rad > kCoaxial_rad) {
-    refuse("face " + quoted(face) + " of the " + whose + " part is not square to the axis: it is " +
-           std::to_string(off_rad * kDegrees_per_rad) + " degrees off");
+    refuse_mate("face " + quoted(face) + " of the " + whose +
+                " part is not square to the axis: it is " +
+                std::to_string(off_rad * kDegrees_per_rad) + " degrees off");
   }
   return normal.dot(axis) > 0.0 ? 1.0 : -1.0;
 }
 
 void check_seat(const Seat& seat, MateKind kind) {
-  if (kind == MateKind::FaceOnFace) refuse("two faces are a seat of their own: leave out `seat`");
+  if (kind == MateKind::FaceOnFace)
+    refuse_mate("two faces are a seat of their own: leave out `seat`");
   for (const Feature* face : {seat.moving_face, seat.fixed_face.feature}) {
     if (face->kind != FeatureKind::Face) {
-      refuse("a seat needs two faces, but " + quoted(*face) + " is a " +
-             std::string(to_string(face->kind)));
+      refuse_mate("a seat needs two faces, but " + quoted(*face) + " is a " +
+                  std::string(to_string(face->kind)));
     }
   }
 }
 
 void check_flip(MateKind kind, const Feature& moving, bool has_seat) {
-  if (has_seat) refuse("the faces of the seat settle the sense: leave out `flip`");
-  if (kind == MateKind::FaceOnFace) refuse("two faces meet in one sense only: leave out `flip`");
+  if (has_seat) refuse_mate("the faces of the seat settle the sense: leave out `flip`");
+  if (kind == MateKind::FaceOnFace)
+    refuse_mate("two faces meet in one sense only: leave out `flip`");
   if (moving.kind == FeatureKind::Hole && !moving.through) {
-    refuse("hole " + quoted(moving) + " is blind and has one opening: leave out `flip`");
+    refuse_mate("hole " + quoted(moving) + " is blind and has one opening: leave out `flip`");
   }
 }
 
@@ -168,9 +171,9 @@ MateKind mate_kind(const Feature& moving, const Feature& fixed) {
   if (moving.kind == Hole && fixed.kind == Hole) {
     return moving.through ? MateKind::HoleOnHole : MateKind::BlindHoleOnHole;
   }
-  refuse(std::string(to_string(moving.kind)) + " " + quoted(moving) + " cannot go into " +
-         std::string(to_string(fixed.kind)) + " " + quoted(fixed) +
-         ": expected a shaft and a hole, two holes or two faces");
+  refuse_mate(std::string(to_string(moving.kind)) + " " + quoted(moving) + " cannot go into " +
+              std::string(to_string(fixed.kind)) + " " + quoted(fixed) +
+              ": expected a shaft and a hole, two holes or two faces");
 }
 
 MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fixed,

@@ -287,7 +287,7 @@ void Project::save_copy(const std::filesystem::path& file) const {
     return;  // every command is on disk already
   }
   Neighbour copy(file);
-  impl_->database.copy_into(copy.path());
+  impl_->database.copy_into(copy.path(), file.string());
   copy.take_place();
 }
 

@@ -499,8 +499,8 @@ void ProjectDatabase::step(const std::vector<JournalRecord>& records, bool undo)
   });
 }
 
-void ProjectDatabase::copy_into(const std::filesystem::path& file) const {
-  guarded(file.string(), [&] {
+void ProjectDatabase::copy_into(const std::filesystem::path& file, const std::string& title) const {
+  guarded(title, [&] {
     SQLite::Statement vacuum(database_, "VACUUM INTO ?");
     vacuum.bind(1, std::filesystem::absolute(file).string());
     vacuum.exec();

@@ -59,7 +59,8 @@ class ProjectDatabase {
               std::span<const ProjectElement> elements);
   void step(const std::vector<JournalRecord>& records, bool undo);
 
-  void copy_into(const std::filesystem::path& file) const;
+  /// `title` stands for `file` in messages.
+  void copy_into(const std::filesystem::path& file, const std::string& title) const;
 
  private:
   void write_rows(const ProjectRows& before, const ProjectRows& after);

@@ -15,13 +15,6 @@ namespace {
 constexpr const char* kModeSetting = "mode";
 constexpr const char* kToleranceSetting = "tolerance_mm";
 
-/// Shortest text that reads back to the same double.
-std::string number_text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
-
 /// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`.
 template <class Map, class Row>
 void add_difference(const Map& from, const Map& to, std::vector<Row>& before,
@@ -59,6 +52,12 @@ bool is_known(const ProjectState& state, const FeatureName& name) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
 
 std::vector<SettingRow> settings_of(const ProjectState& state) {
   return {{kModeSetting, std::string(to_string(state.mode))},

@@ -11,6 +11,9 @@
 
 namespace dowel {
 
+/// Shortest text that reads back to the same double.
+std::string number_text(double value);
+
 struct SettingRow {
   std::string name;
   std::string value;

@@ -1,8 +1,6 @@
 #include "dowel/assembly/session.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -14,6 +12,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "placed_bodies.h"
+#include "project_rows.h"
 
 namespace dowel {
 namespace {
@@ -21,12 +20,6 @@ namespace {
 /// A turn is swept in legs of at most this angle, each well under the half turn at which the
 /// shortest rotation changes its sense.
 constexpr double kLargestLeg_rad = std::numbers::pi / 2.0;
-
-std::string number_text(double value) {
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
 
 [[noreturn]] void not_found(const std::string& message, std::string_view name,
                             const std::vector<std::string>& candidates) {

@@ -337,6 +337,7 @@ TEST_CASE("exports appear whole, and a disk without room damages nothing", "[fau
     CHECK(result->signal == 0);
     CHECK(result->err.find("error: ") != std::string::npos);
   }
+  CHECK(created.err.find("error: c.dwp: ") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(desk.folder / "b.html"));
   CHECK_FALSE(std::filesystem::exists(desk.folder / "c.dwp"));
   CHECK(testing::read_text(desk.folder / "catalog.db") == catalog);
