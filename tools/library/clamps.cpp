@@ -11,14 +11,8 @@
 namespace dowel::library {
 namespace {
 
-const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
-const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
 constexpr std::array<double, 3> kClampColour{0.72, 0.30, 0.22};
 constexpr std::array<double, 3> kSteelColour{0.50, 0.50, 0.53};
-
-std::string element_name(const std::string& name) {
-  return std::string(kSystem) + "/" + name;
-}
 
 /// Seen from the side: two feet, a relief between them, a nose that slopes down.
 Part strap(const StrapSize& size) {

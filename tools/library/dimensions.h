@@ -78,6 +78,8 @@ const FastenerSize& fastener_size(std::string_view thread);
 /// The system H40-12: nodes every 40 mm, each a 12H7 bore over an M12 thread in one axis.
 /// Source: the common "M12/40" size of European hole systems (general knowledge).
 inline constexpr std::string_view kSystem = "H40-12";
+inline constexpr const char* kSystemSource =
+    "hole system 40 mm, M12/12H7: dimensions of this library";
 inline constexpr std::string_view kSystemThread = "M12";
 inline constexpr double kPitch_mm = 40.0;
 inline constexpr double kBore_mm = 12.0;         ///< locating bore, H7

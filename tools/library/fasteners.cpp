@@ -12,15 +12,9 @@
 namespace dowel::library {
 namespace {
 
-const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
-const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
 constexpr std::array<double, 3> kScrewColour{0.16, 0.16, 0.18};
 constexpr std::array<double, 3> kFitScrewColour{0.30, 0.32, 0.20};
-constexpr std::array<double, 3> kSteelColour{0.62, 0.62, 0.65};
-
-std::string element_name(const std::string& name) {
-  return std::string(kSystem) + "/" + name;
-}
+constexpr std::array<double, 3> kBrightSteelColour{0.62, 0.62, 0.65};
 
 /// Head of a socket head cap screw above z = 0, without its socket, as the end of an outline.
 void add_head(std::vector<Eigen::Vector2d>& outline, const SocketHead& head) {
@@ -132,7 +126,7 @@ Part hexagon_nut(const FastenerSize& size, bool high) {
   part.solid = drilled(common(hexagon(width_mm, 0.0, height_mm), turned(outline)), part.features);
   part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
   part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
-  part.colour = kSteelColour;
+  part.colour = kBrightSteelColour;
   return part;
 }
 
@@ -155,7 +149,7 @@ Part washer(const FastenerSize& size, bool heavy) {
                        {inner_mm / 2.0, height_mm}});
   part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
   part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
-  part.colour = kSteelColour;
+  part.colour = kBrightSteelColour;
   return part;
 }
 
@@ -179,7 +173,7 @@ Part dowel_pin(const DowelPinSize& size) {
                           "m6"),
                    face("bottom", {0.0, 0.0, 0.0}, kDown),
                    face("top", {0.0, 0.0, size.length_mm}, kUp)};
-  part.colour = kSteelColour;
+  part.colour = kBrightSteelColour;
   return part;
 }
 

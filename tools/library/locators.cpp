@@ -14,15 +14,8 @@
 namespace dowel::library {
 namespace {
 
-const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
-const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
 constexpr std::array<double, 3> kLocatorColour{0.20, 0.42, 0.66};
 constexpr std::array<double, 3> kPinColour{0.75, 0.66, 0.30};
-constexpr const char* kSystemSource = "hole system 40 mm, M12/12H7: dimensions of this library";
-
-std::string element_name(const std::string& name) {
-  return std::string(kSystem) + "/" + name;
-}
 
 Part edge_locator(int height) {
   Part part;

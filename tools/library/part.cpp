@@ -4,7 +4,13 @@
 #include <cstdio>
 #include <utility>
 
+#include "dimensions.h"
+
 namespace dowel::library {
+
+std::string element_name(const std::string& name) {
+  return std::string(kSystem) + "/" + name;
+}
 
 std::string plain(double value) {
   std::array<char, 32> text{};

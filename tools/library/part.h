@@ -37,6 +37,13 @@ struct Part {
   TopoDS_Shape solid;
 };
 
+/// Along z of a part's frame.
+inline const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
+inline const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
+
+/// Name of an element of the system: "H40-12/riser-80x80x40" for "riser-80x80x40".
+std::string element_name(const std::string& name);
+
 /// A number as it stands in a name: "12", "2.5".
 std::string plain(double value);
 

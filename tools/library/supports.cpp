@@ -12,16 +12,9 @@
 namespace dowel::library {
 namespace {
 
-const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
-const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
 constexpr std::array<double, 3> kPlateColour{0.55, 0.58, 0.62};
 constexpr std::array<double, 3> kRiserColour{0.62, 0.66, 0.70};
 constexpr std::array<double, 3> kPadColour{0.35, 0.37, 0.40};
-constexpr const char* kSystemSource = "hole system 40 mm, M12/12H7: dimensions of this library";
-
-std::string element_name(const std::string& name) {
-  return std::string(kSystem) + "/" + name;
-}
 
 /// Feature name of a node: rows A, B, C from low y, columns 1, 2, 3 from low x.
 std::string node_name(int column, int row) {

@@ -9,9 +9,6 @@
 namespace dowel::library {
 namespace {
 
-const Eigen::Vector3d kUp(0.0, 0.0, 1.0);
-const Eigen::Vector3d kDown(0.0, 0.0, -1.0);
-
 /// Box with vertical edges rounded with `radius_mm`, centred on the z axis.
 TopoDS_Shape rounded_pocket(double length_x_mm, double width_y_mm, double radius_mm,
                             double low_z_mm, double high_z_mm) {
