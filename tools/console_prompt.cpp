@@ -75,6 +75,16 @@ unsigned char complete(EditLine* line, int) {
   return CC_REDISPLAY;
 }
 
+/// Bound to Ctrl-C: drops the line and begins a new one.
+unsigned char drop_line(EditLine* line, int) {
+  const LineInfoW* const info = el_wline(line);
+  const auto length = static_cast<int>(info->lastchar - info->buffer);
+  el_cursor(line, static_cast<int>(info->lastchar - info->cursor));
+  el_deletestr(line, length);
+  std::printf("^C\n");
+  return CC_REDISPLAY;
+}
+
 void run_at_prompt(Console& console, std::string_view line, bool& quits) {
   try {
     const std::vector<Word> words = split_words(line);
@@ -107,6 +117,11 @@ int run_prompt(Console& console) {
   el_set(line.get(), EL_HIST, history, memory.get());
   el_set(line.get(), EL_ADDFN, "dowel-complete", "Completes a name", &complete);
   el_set(line.get(), EL_BIND, "^I", "dowel-complete", nullptr);
+  // While a line is edited Ctrl-C is a key; while a command runs it ends the program as ever, and
+  // the project is as it was before that command.
+  el_set(line.get(), EL_SETTY, "-d", "intr=", nullptr);
+  el_set(line.get(), EL_ADDFN, "dowel-drop-line", "Drops the line", &drop_line);
+  el_set(line.get(), EL_BIND, "^C", "dowel-drop-line", nullptr);
   el_set(line.get(), EL_BIND, "^R", "em-inc-search-prev", nullptr);
 
   const auto& file = console.session().project().file();
