@@ -5,7 +5,11 @@
 namespace dowel::tools {
 
 /// Exit codes of every command (the documented contract).
-enum ExitCode : int { kDone = 0, kFindings = 1, kUsage = 2, kBadInput = 3, kInternal = 4 };
+inline constexpr int kDone = 0;
+inline constexpr int kFindings = 1;
+inline constexpr int kUsage = 2;
+inline constexpr int kBadInput = 3;
+inline constexpr int kInternal = 4;
 
 /// Each adds its subcommands to `app`. A subcommand runs in its callback, prints results to
 /// standard output and everything else to standard error, and leaves its exit code in `exit_code`.

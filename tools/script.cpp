@@ -101,7 +101,7 @@ class ScriptRun {
     ++done_;
     print_reply(reply, words.front().text, lines_.number(), seconds_since(start), options_);
     if (!reply.has_findings) return !reply.quits;
-    exit_code_ = std::max<int>(exit_code_, kFindings);
+    exit_code_ = std::max(exit_code_, kFindings);
     if (words.front().text != "expect") return true;
     lines_.tell(words.front().column, "the command did not end as expected");
     return go_on();

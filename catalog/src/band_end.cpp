@@ -36,7 +36,7 @@ struct HeightRange {
   }
 };
 
-bool contains(const std::vector<std::uint32_t>& sorted, std::uint32_t value) {
+bool is_among(const std::vector<std::uint32_t>& sorted, std::uint32_t value) {
   return std::binary_search(sorted.begin(), sorted.end(), value);
 }
 
@@ -58,7 +58,7 @@ std::vector<Piece> rim_pieces(const FacetedSolid& solid, const std::vector<FaceN
   std::vector<Piece> pieces;
   for (const std::uint32_t face : band.faces) {
     for (const RimEdge& edge : graph[face].rim) {
-      if (contains(band.faces, edge.face_across)) continue;
+      if (is_among(band.faces, edge.face_across)) continue;
       const Eigen::Vector3d a = solid.vertices[edge.from] - axis.origin;
       const Eigen::Vector3d b = solid.vertices[edge.to] - axis.origin;
       const Eigen::Vector2d flat_a(u.dot(a), v.dot(a));
@@ -157,7 +157,7 @@ void add_transition(const FacetedSolid& solid, const std::vector<FaceNode>& grap
   end.beyond.clear();
   for (const std::uint32_t face : end.transition) {
     for (const std::uint32_t next : graph[face].neighbours) {
-      if (contains(band.faces, next) || contains(end.transition, next)) continue;
+      if (is_among(band.faces, next) || is_among(end.transition, next)) continue;
       end.beyond.push_back(next);
     }
   }

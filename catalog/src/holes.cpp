@@ -16,7 +16,7 @@ constexpr double kCoreOffset = 0.1;
 
 /// A piece of a bore ends in a crossing hole where walls of other holes take up this much of its
 /// rim.
-constexpr double kMostOfRim = 0.5;
+constexpr double kCrossedRimShare = 0.5;
 
 /// A boss inside a bore makes it a groove where it takes up this part of its length; not a simple
 /// fraction, so that none decides by rounding.
@@ -134,8 +134,8 @@ class Bore {
 
   static bool are_parted_by_crossing(const Band& low, const Band& high) {
     const double gap_mm = high.ends[0].rim_mm - low.ends[1].rim_mm;
-    return low.is_cylinder && high.is_cylinder && low.ends[1].inner_wall_share > kMostOfRim &&
-           high.ends[0].inner_wall_share > kMostOfRim &&
+    return low.is_cylinder && high.is_cylinder && low.ends[1].inner_wall_share > kCrossedRimShare &&
+           high.ends[0].inner_wall_share > kCrossedRimShare &&
            gap_mm <= low.length_mm() + high.length_mm();
   }
 
@@ -190,8 +190,8 @@ class Bore {
   bool opens_high(const Band& lowest, const Band& highest) const {
     const double wider_mm = highest.radius_mm[1] - lowest.radius_mm[0];
     if (std::abs(wider_mm) > kSameFeature_mm) return wider_mm > 0.0;
-    const bool is_low_crossing = lowest.ends[0].inner_wall_share > kMostOfRim;
-    const bool is_high_crossing = highest.ends[1].inner_wall_share > kMostOfRim;
+    const bool is_low_crossing = lowest.ends[0].inner_wall_share > kCrossedRimShare;
+    const bool is_high_crossing = highest.ends[1].inner_wall_share > kCrossedRimShare;
     if (is_low_crossing != is_high_crossing) return is_low_crossing;
     for (const Eigen::Index i : {2, 1, 0}) {
       if (std::abs(axis_.direction[i]) > kUnitVectorSlack) return axis_.direction[i] > 0.0;

@@ -33,7 +33,7 @@ struct Property {
   std::string_view count_type;  ///< empty: not a list
 };
 
-struct Element {
+struct PlyElement {
   std::string_view name;
   std::uint64_t count = 0;
   std::vector<Property> properties;
@@ -41,7 +41,7 @@ struct Element {
 
 struct Header {
   std::optional<Encoding> encoding;
-  std::vector<Element> elements;
+  std::vector<PlyElement> elements;
   std::string_view data;
 };
 
@@ -71,7 +71,7 @@ void read_header_line(std::string_view line, Header& header) {
     if (name == "binary_big_endian") header.encoding = Encoding::BigEndian;
     if (!header.encoding) fail("PLY format " + quoted(name) + " is not supported");
   } else if (keyword == "element") {
-    Element element;
+    PlyElement element;
     element.name = next_word(line);
     const std::string_view count = next_word(line);
     const auto [end, error] =
@@ -186,7 +186,7 @@ void append_face(const std::vector<std::uint32_t>& corners, std::uint64_t number
   append_polygon(corners, mesh);
 }
 
-void read_element(const Element& element, Numbers& numbers, FacetedSolid& mesh) {
+void read_element(const PlyElement& element, Numbers& numbers, FacetedSolid& mesh) {
   if (element.properties.empty() && element.count > 0) {
     fail("PLY header: element " + quoted(element.name) + " has no properties");
   }
@@ -223,7 +223,7 @@ FacetedSolid parse_ply(std::string_view content) {
   const Header header = read_header(content);
   Numbers numbers(header.data, *header.encoding);
   FacetedSolid mesh;
-  for (const Element& element : header.elements) read_element(element, numbers, mesh);
+  for (const PlyElement& element : header.elements) read_element(element, numbers, mesh);
   return mesh;
 }
 
