@@ -104,9 +104,26 @@ struct PlacedTriangle {
   Eigen::Vector3d normal_B;
 };
 
-PlacedTriangle placed(const Pose& X_BA, const ModelTriangle& t) {
-  return {{X_BA * t.corners[0], X_BA * t.corners[1], X_BA * t.corners[2]},
-          X_BA.rotation() * t.normal};
+/// A pose as matrix and vector, for many points.
+struct Placement {
+  explicit Placement(const Pose& X_BA)
+      : rotation(X_BA.rotation_matrix()), translation(X_BA.translation()) {}
+  PlacedTriangle operator*(const ModelTriangle& t) const {
+    return {{rotation * t.corners[0] + translation, rotation * t.corners[1] + translation,
+             rotation * t.corners[2] + translation},
+            rotation * t.normal};
+  }
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+};
+
+/// Distance of the boxes around two facets.
+double box_gap(const Corners& a, const Corners& b) {
+  const Eigen::Vector3d a_min = a[0].cwiseMin(a[1]).cwiseMin(a[2]);
+  const Eigen::Vector3d a_max = a[0].cwiseMax(a[1]).cwiseMax(a[2]);
+  const Eigen::Vector3d b_min = b[0].cwiseMin(b[1]).cwiseMin(b[2]);
+  const Eigen::Vector3d b_max = b[0].cwiseMax(b[1]).cwiseMax(b[2]);
+  return (a_min - b_max).cwiseMax(b_min - a_max).maxCoeff();
 }
 
 /// Lower bound of the distance of the corners from the plane; 0 where they lie on both sides.
@@ -174,6 +191,7 @@ class Judge {
         NarrowScratch& scratch, QueryCounters& counters)
       : pair_(pair),
         X_AB_(pair.X_BA.inverse()),
+        placement_(pair.X_BA),
         options_(options),
         memory_(memory),
         scratch_(scratch),
@@ -275,32 +293,53 @@ class Judge {
 
   bool still_touches() {
     if (memory_.contact_a == PairMemory::kNone) return false;
-    const PlacedTriangle a_B = placed(pair_.X_BA, pair_.a.triangles()[memory_.contact_a]);
+    const PlacedTriangle a_B = placement_ * pair_.a.triangles()[memory_.contact_a];
     double ignored = 0.0;
-    if (touches(memory_.contact_a, a_B, memory_.contact_b, ignored)) return true;
+    if (faces_lie_on_each_other(memory_.contact_a, a_B, memory_.contact_b) ||
+        touches(memory_.contact_a, a_B, memory_.contact_b, ignored)) {
+      return true;
+    }
     memory_.contact_a = PairMemory::kNone;
     return false;
   }
 
-  /// Looks for facets within the tolerance; where there are none, finds how far they are apart.
+  /// Looks for facets within the tolerance: first, at little cost, flat ones that face each other,
+  /// as in most contacts, then all.
   void look_for_contact() {
+    visit_near([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+      return faces_lie_on_each_other(i, a_B, j);
+    });
+    if (result_.verdict == Verdict::Contact) return;
     double apart = std::numeric_limits<double>::infinity();
+    const double pruned = visit_near([&](std::uint32_t i, const PlacedTriangle& a_B,
+                                         std::uint32_t j) { return touches(i, a_B, j, apart); });
+    if (result_.verdict == Verdict::Clear) {
+      result_.gap_mm = std::max(std::min(apart, pruned), options_.tolerance_mm);
+    }
+  }
+
+  /// Calls `found(i, facet i of A in B, j)` for facets whose boxes are within the tolerance, until
+  /// it returns true; what it was true for is remembered as in contact. Returns a lower bound of
+  /// the distance of those that were left out.
+  template <class Found>
+  double visit_near(const Found& found) {
+    double left_out = std::numeric_limits<double>::infinity();
     for_each_leaf_pair(
         pair_, scratch_, counters_, [](const BvhNode&, const BvhNode&) { return true; },
         [&](double gap_mm) {
-          if (gap_mm > options_.tolerance_mm) apart = std::min(apart, gap_mm);
+          if (gap_mm > options_.tolerance_mm) left_out = std::min(left_out, gap_mm);
           return gap_mm <= options_.tolerance_mm;
         },
         [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
           return for_each_pair(leaf_a, leaf_b,
                                [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                                 if (!touches(i, a_B, j, apart)) return true;
+                                 if (!found(i, a_B, j)) return true;
                                  memory_.contact_a = i;
                                  memory_.contact_b = j;
                                  return false;
                                });
         });
-    if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, options_.tolerance_mm);
+    return left_out;
   }
 
   /// Calls `visit(i, facet i of A in B, j)` until it returns false.
@@ -309,12 +348,29 @@ class Judge {
     for (std::uint32_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
       const ModelTriangle& a = pair_.a.triangles()[i];
       if (options_.holes == HoleMode::Paper && a.is_hole) continue;
-      const PlacedTriangle a_B = placed(pair_.X_BA, a);
+      const PlacedTriangle a_B = placement_ * a;
       for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
         if (options_.holes == HoleMode::Paper && pair_.b.triangles()[j].is_hole) continue;
         if (!visit(i, a_B, j)) return false;
       }
     }
+    return true;
+  }
+
+  /// Whether two flat facets that face each other within the tolerance have an area in common.
+  bool faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+    const ModelTriangle& a = pair_.a.triangles()[i];
+    const ModelTriangle& b = pair_.b.triangles()[j];
+    if (a_B.normal_B.dot(b.normal) > -kOpposite) return false;
+    ++counters_.triangle_tests;
+    if (apart_by_planes(a, a_B, b) > options_.tolerance_mm ||
+        box_gap(a_B.corners_B, b.corners) > options_.tolerance_mm) {
+      return false;
+    }
+    const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
+    if (!middle || !is_between_faces(i, j, *middle)) return false;
+    note_method(a, b, a.slack_mm + b.slack_mm);
+    is_suspect_ = true;
     return true;
   }
 
@@ -331,14 +387,11 @@ class Judge {
       apart = std::min(apart, between);
       return false;
     }
-    note_method(a, b, slack);
-    if (a_B.normal_B.dot(b.normal) < -kOpposite) {
-      const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
-      if (middle && is_between_faces(i, j, *middle)) {
-        is_suspect_ = true;
-        return true;
-      }
+    if (const double gap = box_gap(a_B.corners_B, b.corners); gap > margin) {
+      apart = std::min(apart, gap - slack);
+      return false;
     }
+    note_method(a, b, slack);
     const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
     const double gap = std::sqrt(closest.distance_squared_mm2);
     if (gap > margin) {
@@ -383,14 +436,24 @@ class Judge {
   bool knows_ball() {
     if (memory_.ball_depth_a_mm <= 0.0) return false;
     const Eigen::Vector3d ball_B = pair_.X_BA * memory_.ball_A;
-    const double depth = std::min(memory_.ball_depth_a_mm,
-                                  memory_.ball_depth_b_mm - (ball_B - memory_.ball_B).norm());
-    if (depth < erosion_mm_ || options_.measure_depth || !pair_.reliefs_B.empty()) {
+    double depth_b = memory_.ball_depth_b_mm - (ball_B - memory_.ball_B).norm();
+    const bool is_plain = !options_.measure_depth && pair_.reliefs_B.empty();
+    if (depth_b < erosion_mm_ && is_plain) {
+      // The same point of A may be deep in B at another place.
+      const NearestPoint near = pair_.b.nearest(ball_B);
+      if (near.inside && near.distance_mm >= erosion_mm_) {
+        depth_b = near.distance_mm;
+        memory_.ball_B = ball_B;
+        memory_.ball_depth_b_mm = depth_b;
+      }
+    }
+    if (depth_b < erosion_mm_ || !is_plain) {
       const double reach = kReachTolerances * options_.tolerance_mm;
       if (try_witness(find_witness(pair_, ball_B, erosion_mm_, reach))) return true;
       memory_.ball_depth_a_mm = 0.0;
       return false;
     }
+    const double depth = std::min(memory_.ball_depth_a_mm, depth_b);
     result_.method = Method::Exact;
     result_.verdict = Verdict::Interference;
     result_.depth_mm = 2.0 * depth;
@@ -401,7 +464,7 @@ class Judge {
 
   void look_for_interference() {
     if (memory_.crossing_a != PairMemory::kNone &&
-        crosses(memory_.crossing_a, placed(pair_.X_BA, pair_.a.triangles()[memory_.crossing_a]),
+        crosses(memory_.crossing_a, placement_ * pair_.a.triangles()[memory_.crossing_a],
                 memory_.crossing_b)) {
       return;
     }
@@ -435,7 +498,10 @@ class Judge {
     ++counters_.triangle_tests;
     const double slack = a.slack_mm + b.slack_mm;
     const double margin = options_.tolerance_mm + slack;
-    if (apart_by_planes(a, a_B, b) > options_.tolerance_mm) return false;
+    if (apart_by_planes(a, a_B, b) > options_.tolerance_mm ||
+        box_gap(a_B.corners_B, b.corners) > margin) {
+      return false;
+    }
     note_method(a, b, slack);
     const double reach = kReachTolerances * options_.tolerance_mm + kReachSlacks * slack;
     const auto crossing =
@@ -507,6 +573,7 @@ class Judge {
 
   const ModelPair& pair_;
   Pose X_AB_;
+  Placement placement_;
   const QueryOptions& options_;
   PairMemory& memory_;
   NarrowScratch& scratch_;
@@ -528,6 +595,7 @@ double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
                           const KeptOff& kept_off_a, const KeptOff& kept_off_b,
                           NarrowScratch& scratch, QueryCounters& counters) {
   double best = cap_mm;
+  const Placement placement(pair.X_BA);
   for_each_leaf_pair(
       pair, scratch, counters,
       [&](const BvhNode& a, const BvhNode& b) {
@@ -537,7 +605,7 @@ double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
       [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
         for (const ModelTriangle& a : pair.a.triangles().subspan(leaf_a.first, leaf_a.count)) {
           if (holes == HoleMode::Paper && a.is_hole) continue;
-          const PlacedTriangle a_B = placed(pair.X_BA, a);
+          const PlacedTriangle a_B = placement * a;
           for (const ModelTriangle& b : pair.b.triangles().subspan(leaf_b.first, leaf_b.count)) {
             if (holes == HoleMode::Paper && b.is_hole) continue;
             ++counters.triangle_tests;
