@@ -61,8 +61,9 @@ std::vector<Run> run_scenario(const Scenario& scenario, std::span<const Method> 
 struct ScalePoint {
   std::size_t count = 0;
   std::string method;
-  double add_us = 0.0;   ///< mean of adding the last tenth of the elements
-  double move_us = 0.0;  ///< median
+  double add_us = 0.0;           ///< mean of adding the last tenth of the elements
+  double add_and_move_us = 0.0;  ///< median of adding one more and the first move after it
+  double move_us = 0.0;          ///< median
   double move_mean_us = 0.0;
   double bytes_per_element = 0.0;  ///< heap of the last half of the elements
 };

@@ -13,6 +13,7 @@ namespace dowel::bench {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+constexpr double kSlack = 0.05 * kDefaultTolerance_mm;  // a truth this close to a threshold is none
 
 Pose upright(double x, double y, double z, double yaw_rad) {
   return Pose(Eigen::Quaterniond(std::cos(0.5 * yaw_rad), 0.0, 0.0, std::sin(0.5 * yaw_rad)),
@@ -96,6 +97,9 @@ class MotionBuilder {
         break;
       case MotionKind::Contained:
         add_contained();
+        break;
+      case MotionKind::Tight:
+        add_tight();
         break;
     }
     return std::move(motion_);
@@ -248,6 +252,34 @@ class MotionBuilder {
     }
   }
 
+  /// Off the axis by 0.08 to 0.22 mm, a land of the pin ahead.
+  void add_tight() {
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double s = share(i, count_);
+      const double in = 0.8 - 0.2 * std::cos(2.0 * kPi * 5.0 * s);
+      const double off = 0.15 + 0.07 * std::sin(2.0 * kPi * 7.0 * s);
+      const double direction = 2.0 * kPi * 3.0 * s;
+      const Pose pose =
+          upright(scene_.fit.top.x() + off * std::cos(direction),
+                  scene_.fit.top.y() + off * std::sin(direction),
+                  scene_.fit.top.z() + 1.0 - (scene_.fit.travel_mm - 2.0) * in, direction);
+      Truth truth;
+      // Pin and wall are cylinders: the gap, or the ball that fits into both, lies on the line of
+      // their axes. That nothing else is near follows from boxes.
+      if (truth_by_bounds(scene_, pose, scene_.fit.partner).verdict == Verdict::Clear) {
+        truth.verdict = verdict_of_gap(kFitClearance_mm - off);
+      }
+      add(pose, truth);
+    }
+  }
+
+  static std::optional<Verdict> verdict_of_gap(double gap) {
+    constexpr double kTolerance = kDefaultTolerance_mm;
+    if (std::abs(std::abs(gap) - kTolerance) < kSlack) return {};
+    if (gap > kTolerance) return Verdict::Clear;
+    return gap > -kTolerance ? Verdict::Contact : Verdict::Interference;
+  }
+
   const Scenario& scene_;
   std::size_t count_;
   testing::RandomGeometry random_;
@@ -272,13 +304,14 @@ std::string_view to_string(MotionKind kind) {
       return "contact";
     case MotionKind::Contained:
       return "contained";
+    case MotionKind::Tight:
+      return "tight";
   }
   throw std::logic_error("unknown motion");
 }
 
 Truth truth_by_bounds(const Scenario& scenario, const Pose& X_WM, std::optional<std::size_t> skip) {
   constexpr double kTolerance = kDefaultTolerance_mm;
-  constexpr double kSlack = 0.05 * kTolerance;  // keeps off the threshold
   std::vector<Aabb> hull;
   for (const Aabb& part : scenario.moving->hull) hull.push_back(box_at(X_WM, part));
   const Aabb box = box_at(X_WM, scenario.moving->box);
@@ -320,8 +353,13 @@ std::vector<Pose> field_path(const Scenario& scenario, std::size_t count) {
   std::vector<Pose> poses;
   const double reach = reach_mm(*scenario.moving);
   const Aabb& stage = scenario.stage;
-  // A stretch of the same length whatever the number of elements, in the middle of the field.
-  const Eigen::Vector2d middle = stage.center().head<2>();
+  // Around the riser in the middle, the same way whatever the number of elements.
+  const Eigen::Vector2d center = stage.center().head<2>();
+  Eigen::Vector2d middle = scenario.elements.front().X_WE.translation().head<2>();
+  for (const Placed& p : scenario.elements) {
+    const Eigen::Vector2d at = p.X_WE.translation().head<2>();
+    if ((at - center).norm() < (middle - center).norm() - kSlack) middle = at;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     const double s = share(i, count);
     const double above = 0.05 + 0.475 * (1.0 + std::sin(2.0 * kPi * 9.0 * s));

@@ -23,12 +23,13 @@ struct Truth {
 
 /// Free: on the way through the fixture. Near: sliding 0.05 to 1 mm above tops. Insert: plunges and
 /// drags that run into parts, slides pressed into a top. Fit: pin in hole, nut on stud. Contact:
-/// sliding on tops, exactly flush and up to 1e-3 mm off. Contained: wholly inside a block.
-enum class MotionKind : std::uint8_t { Free, Near, Insert, Fit, Contact, Contained };
+/// sliding on tops, exactly flush and up to 1e-3 mm off. Contained: wholly inside a block. Tight:
+/// as fit, but off the axis by up to more than the clearance, less than what facets are off by.
+enum class MotionKind : std::uint8_t { Free, Near, Insert, Fit, Contact, Contained, Tight };
 
-inline constexpr std::array kMotionKinds{MotionKind::Free,    MotionKind::Near,
-                                         MotionKind::Insert,  MotionKind::Fit,
-                                         MotionKind::Contact, MotionKind::Contained};
+inline constexpr std::array kMotionKinds{
+    MotionKind::Free,    MotionKind::Near,      MotionKind::Insert, MotionKind::Fit,
+    MotionKind::Contact, MotionKind::Contained, MotionKind::Tight};
 
 std::string_view to_string(MotionKind kind);
 

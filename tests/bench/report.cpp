@@ -42,13 +42,17 @@ std::vector<MotionKind> kinds_of(const Results& results) {
 
 constexpr const char* kReference = "FCL OBBRSS";
 
-/// Geometric mean over the motions (without "contained", which triangle methods cannot see) of the
-/// reference's time over the method's.
+/// The motions that the times are compared on; triangle methods cannot judge the others.
+bool is_compared(MotionKind kind) {
+  return kind != MotionKind::Contained && kind != MotionKind::Tight;
+}
+
+/// Geometric mean over the motions of the reference's time over the method's.
 double ratio(const Results& results, const std::string& method, double Statistics::*value) {
   double sum = 0.0;
   int count = 0;
   for (const MotionKind kind : kinds_of(results)) {
-    if (kind == MotionKind::Contained) continue;
+    if (!is_compared(kind)) continue;
     const auto reference = select(results, kReference, kind);
     if (reference.empty()) return 0.0;
     sum +=
@@ -151,23 +155,28 @@ void write_counters(std::ostream& out, const Results& results) {
 
 void write_scale(std::ostream& out, const Results& results) {
   if (results.scale.empty()) return;
-  out << "\n### Growth\n\nMean cost of adding an element to a scene of that size (us) / median and "
-         "batch "
-         "mean of a move among them (us) / heap bytes an element beyond shared meshes.\n\n";
+  out << "\n### Growth\n\nMicroseconds, by the number of elements: adding an element / adding one "
+         "and "
+         "the first move after it / median of a move among them, batch mean; and heap bytes an "
+         "element "
+         "takes beyond what instances share.\n\n";
   std::vector<std::string> columns{"method"};
   for (const ScalePoint& point : results.scale) {
-    if (point.method == results.scale.front().method)
-      columns.push_back(std::to_string(point.count));
+    if (point.method == results.methods.front()) columns.push_back(std::to_string(point.count));
   }
+  columns.emplace_back("bytes");
   header(out, columns);
-  std::string method;
-  for (const ScalePoint& point : results.scale) {
-    if (point.method != method) out << (method.empty() ? "| " : " |\n| ") << point.method;
-    method = point.method;
-    out << " | " << text(point.add_us) << " / " << text(point.move_us) << ", "
-        << text(point.move_mean_us) << " / " << std::llround(point.bytes_per_element);
+  for (const std::string& method : results.methods) {
+    out << "| " << method;
+    double bytes = 0.0;
+    for (const ScalePoint& point : results.scale) {
+      if (point.method != method) continue;
+      out << " | " << text(point.add_us) << " / " << text(point.add_and_move_us) << " / "
+          << text(point.move_us) << ", " << text(point.move_mean_us);
+      bytes = point.bytes_per_element;
+    }
+    out << " | " << std::llround(bytes) << " |\n";
   }
-  out << " |\n";
 }
 
 }  // namespace
@@ -228,6 +237,7 @@ void write_json(std::ostream& out, const Results& results) {
     json["growth"].push_back({{"elements", point.count},
                               {"method", point.method},
                               {"add_us", point.add_us},
+                              {"add_and_move_us", point.add_and_move_us},
                               {"move_median_us", point.move_us},
                               {"move_mean_us", point.move_mean_us},
                               {"bytes_per_element", point.bytes_per_element}});
