@@ -170,6 +170,7 @@ double disc_area(double radius_mm) {
 std::vector<std::uint32_t> loop_at(Builder& builder, const std::vector<Eigen::Vector2d>& polygon,
                                    double z) {
   std::vector<std::uint32_t> result;
+  result.reserve(polygon.size());
   for (const Eigen::Vector2d& p : polygon) result.push_back(builder.vertex({p.x(), p.y(), z}));
   return result;
 }
@@ -661,8 +662,9 @@ Placed placed(ElementPtr element, const Pose& X_WE) {
     const Obb obb{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.size()};
     return bounds(transformed(X_WE, obb));
   };
-  Placed result{element, X_WE, in_world(element->box), {}};
-  for (const Aabb& box : element->core) result.core_W.push_back(in_world(box));
+  Placed result{std::move(element), X_WE, {}, {}};
+  result.box_W = in_world(result.element->box);
+  for (const Aabb& box : result.element->core) result.core_W.push_back(in_world(box));
   return result;
 }
 
@@ -682,6 +684,7 @@ std::vector<Scenario> paper_scenarios() {
       {"d", "slots, rhombus pin", 29452, 236, true, true, 4, 4,
        [] { return rhombus_pin(kShank_mm, std::numbers::pi / 6.0, 30.0, 30); }}};
   std::vector<Scenario> result;
+  result.reserve(layouts.size());
   for (const Layout& layout : layouts) result.push_back(tuned(layout));
   return result;
 }
@@ -698,8 +701,9 @@ Scenario field_of_elements(std::size_t count) {
   const double start = -0.5 * kPitch_mm * static_cast<double>(side - 1);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = i / 2;
+    const std::size_t row = place / side;
     const double x = start + kPitch_mm * static_cast<double>(place % side);
-    const double y = start + kPitch_mm * static_cast<double>(place / side);
+    const double y = start + kPitch_mm * static_cast<double>(row);
     const bool is_pin = i % 2 == 1;
     scene.elements.push_back(placed(is_pin ? kit.pin : kit.riser, at(x, y, is_pin ? 25.0 : 0.0)));
   }
