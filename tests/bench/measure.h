@@ -18,7 +18,7 @@ struct Run {
   std::string method;
   std::vector<double>
       times_us;  ///< by pose, the fastest of all rounds, with one reading of the clock
-  double batch_mean_us = 0.0;  ///< all poses in one go without reading the clock between
+  double batch_mean_us = 0.0;  ///< all poses in one go, processor time
   std::vector<Answer> answers;
   std::vector<Truth> truth;
   std::optional<Checker::Counters> counters;

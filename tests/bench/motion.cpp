@@ -125,7 +125,7 @@ class MotionBuilder {
     while (true) {
       const Eigen::Vector3d s(random_.uniform(0.0, 1.0), random_.uniform(0.0, 1.0),
                               random_.uniform(0.0, 1.0));
-      const Pose pose(random_.rotation(), space.min + s.cwiseProduct(space.size()));
+      Pose pose(random_.rotation(), space.min + s.cwiseProduct(space.size()));
       if (is_free(pose)) return pose;
     }
   }

@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <ostream>
@@ -79,6 +80,24 @@ void write_scenarios(std::ostream& out, const Results& results) {
   }
 }
 
+/// What the poses are known to be: a motion whose poses are all of one kind could be judged right
+/// by a method that always gives the same answer.
+void write_truth(std::ostream& out, const Results& results) {
+  out << "\n### Poses by their truth\n\nOf all scenes; unknown ones are timed but not judged.\n\n";
+  header(out, {"motion", "clear", "contact", "interference", "unknown"});
+  for (const MotionKind kind : kinds_of(results)) {
+    std::array<std::size_t, 4> counts{};
+    for (const Run* run : select(results, results.methods.front(), kind)) {
+      for (const Truth& truth : run->truth) {
+        ++counts[truth.verdict ? static_cast<std::size_t>(*truth.verdict) : 3];
+      }
+    }
+    out << "| " << to_string(kind);
+    for (const std::size_t n : counts) out << " | " << n;
+    out << " |\n";
+  }
+}
+
 void write_times(std::ostream& out, const Results& results) {
   out << "\n### Time per move\n\nMicroseconds: median / 99th percentile / mean of a batch, over "
          "the "
@@ -106,9 +125,7 @@ void write_scores(std::ostream& out, const Results& results, const char* title,
   std::vector<std::string> columns{"method"};
   const std::vector<MotionKind> kinds = kinds_of(results);
   for (const MotionKind kind : kinds) {
-    columns.emplace_back(kind == MotionKind::Insert    ? "penetrating"
-                         : kind == MotionKind::Contact ? "touching"
-                                                       : to_string(kind));
+    columns.emplace_back(to_string(kind));
   }
   header(out, columns);
   for (const std::string& method : results.methods) {
@@ -184,6 +201,7 @@ void write_scale(std::ostream& out, const Results& results) {
 void write_tables(std::ostream& out, const Results& results) {
   write_scenarios(out, results);
   if (!results.runs.empty()) {
+    write_truth(out, results);
     write_times(out, results);
     write_scores(
         out, results,
