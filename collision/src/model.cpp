@@ -212,6 +212,7 @@ void CollisionModel::build_tree() {
     }
     nodes_[work.node].min = box.min;
     nodes_[work.node].max = box.max;
+    set_cone(nodes_[work.node], std::span(order).subspan(work.begin, work.end - work.begin));
     if (work.end - work.begin <= kTrianglesPerLeaf) {
       nodes_[work.node].first = work.begin;
       nodes_[work.node].count = work.end - work.begin;
@@ -242,6 +243,19 @@ void CollisionModel::build_tree() {
   }
   triangles_ = std::move(sorted_triangles);
   component_of_ = std::move(sorted_components);
+}
+
+void CollisionModel::set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::uint32_t t : triangles) sum += triangles_[t].normal;
+  if (!(sum.norm() > 0.0)) return;
+  const Eigen::Vector3d axis = sum.normalized();
+  double cosine = 1.0;
+  for (const std::uint32_t t : triangles) cosine = std::min(cosine, axis.dot(triangles_[t].normal));
+  if (!(cosine > 0.0)) return;
+  node.normal = axis.cast<float>();
+  node.cosine = static_cast<float>(cosine);
+  node.sine = static_cast<float>(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
 }
 
 void CollisionModel::find_overhangs() {

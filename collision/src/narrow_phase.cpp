@@ -34,6 +34,9 @@ constexpr double kProjectionGain = 1.0e-3;
 /// Cosine above which two facets are parallel enough to look for what they have in common.
 constexpr double kOpposite = 0.999;
 
+/// Slack of the cones of normals for that angle and for single precision.
+constexpr double kConeSlack = 0.06;
+
 /// Boxes of a tree of A, in the frame of A, against boxes of B in the frame of B.
 class NodeSeparation {
  public:
@@ -146,6 +149,20 @@ double apart_by_planes(const ModelTriangle& a, const PlacedTriangle& a_B, const 
   return std::max(by_b - of_a - b.normal_slack_mm, by_a - of_b - a.normal_slack_mm);
 }
 
+/// How far `other` lies beyond one of the edges of a facet, along its plane; negative: beyond none.
+double beyond_edges(const Corners& corners, const Eigen::Vector3d& normal, const Corners& other) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d edge = corners[(i + 1) % 3] - corners[i];
+    const Eigen::Vector3d outward = edge.cross(normal);
+    const double least =
+        std::min({outward.dot(other[0] - corners[i]), outward.dot(other[1] - corners[i]),
+                  outward.dot(other[2] - corners[i])});
+    if (least > 0.0) most = std::max(most, least / std::sqrt(edge.squaredNorm()));
+  }
+  return most;
+}
+
 /// A point in the middle of what two facets in one plane have in common; nothing where that is no
 /// area.
 std::optional<Eigen::Vector3d> middle_of_overlap(const Corners& a, const Corners& b,
@@ -209,7 +226,33 @@ class Judge {
     return result_;
   }
 
+  /// The same by looking at all pairs of facets, without knowing of anything that forbids one or
+  /// the other.
+  PairVerdict decide_by_brute_force() {
+    const BvhNode all_a = all_facets(pair_.a);
+    const BvhNode all_b = all_facets(pair_.b);
+    double apart = std::numeric_limits<double>::infinity();
+    for_each_pair(all_a, all_b, [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+      return !faces_lie_on_each_other(i, a_B, j) && !touches(i, a_B, j, apart);
+    });
+    if (is_suspect_) {
+      for_each_pair(all_a, all_b, [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+        return !crosses(i, a_B, j);
+      });
+    }
+    if (result_.verdict != Verdict::Interference) look_for_containment();
+    if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, options_.tolerance_mm);
+    return result_;
+  }
+
  private:
+  static BvhNode all_facets(const CollisionModel& model) {
+    BvhNode node = model.nodes()[0];
+    node.first = 0;
+    node.count = static_cast<std::uint32_t>(model.triangles().size());
+    return node;
+  }
+
   // What forbids interference.
 
   bool boxes_are_shallow() {
@@ -306,26 +349,36 @@ class Judge {
   /// Looks for facets within the tolerance: first, at little cost, flat ones that face each other,
   /// as in most contacts, then all.
   void look_for_contact() {
-    visit_near([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-      return faces_lie_on_each_other(i, a_B, j);
-    });
+    visit_near([&](const BvhNode& a, const BvhNode& b) { return may_face(a, b); },
+               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                 return faces_lie_on_each_other(i, a_B, j);
+               });
     if (result_.verdict == Verdict::Contact) return;
     double apart = std::numeric_limits<double>::infinity();
-    const double pruned = visit_near([&](std::uint32_t i, const PlacedTriangle& a_B,
+    const double pruned = visit_near([](const BvhNode&, const BvhNode&) { return true; },
+                                     [&](std::uint32_t i, const PlacedTriangle& a_B,
                                          std::uint32_t j) { return touches(i, a_B, j, apart); });
     if (result_.verdict == Verdict::Clear) {
       result_.gap_mm = std::max(std::min(apart, pruned), options_.tolerance_mm);
     }
   }
 
-  /// Calls `found(i, facet i of A in B, j)` for facets whose boxes are within the tolerance, until
-  /// it returns true; what it was true for is remembered as in contact. Returns a lower bound of
-  /// the distance of those that were left out.
-  template <class Found>
-  double visit_near(const Found& found) {
+  /// Whether facets of two nodes may face each other.
+  bool may_face(const BvhNode& a, const BvhNode& b) const {
+    const Eigen::Vector3d normal_B = placement_.rotation * a.normal.cast<double>();
+    const double opposite = -normal_B.dot(b.normal.cast<double>());
+    const double cosine = a.cosine * b.cosine - a.sine * b.sine;  // of both spreads together
+    return a.cosine <= 0.0F || b.cosine <= 0.0F || opposite >= cosine - kConeSlack;
+  }
+
+  /// Calls `found(i, facet i of A in B, j)` for facets of wanted nodes whose boxes are within the
+  /// tolerance, until it returns true; what it was true for is remembered as in contact. Returns a
+  /// lower bound of the distance of those that were left out.
+  template <class WantedNodes, class Found>
+  double visit_near(const WantedNodes& wanted_nodes, const Found& found) {
     double left_out = std::numeric_limits<double>::infinity();
     for_each_leaf_pair(
-        pair_, scratch_, counters_, [](const BvhNode&, const BvhNode&) { return true; },
+        pair_, scratch_, counters_, wanted_nodes,
         [&](double gap_mm) {
           if (gap_mm > options_.tolerance_mm) left_out = std::min(left_out, gap_mm);
           return gap_mm <= options_.tolerance_mm;
@@ -392,6 +445,12 @@ class Judge {
       return false;
     }
     note_method(a, b, slack);
+    if (const double gap = std::max(beyond_edges(b.corners, b.normal, a_B.corners_B),
+                                    beyond_edges(a_B.corners_B, a_B.normal_B, b.corners));
+        gap > margin) {
+      apart = std::min(apart, gap - slack);
+      return false;
+    }
     const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
     const double gap = std::sqrt(closest.distance_squared_mm2);
     if (gap > margin) {
@@ -514,7 +573,10 @@ class Judge {
         if (try_start(start, i, j, reach)) return true;
       }
     }
-    if (slack == 0.0) return false;
+    if (slack == 0.0 || beyond_edges(b.corners, b.normal, a_B.corners_B) > margin ||
+        beyond_edges(a_B.corners_B, a_B.normal_B, b.corners) > margin) {
+      return false;
+    }
     const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
     return closest.distance_squared_mm2 <= margin * margin &&
            try_start(0.5 * (closest.on_a + closest.on_b), i, j, reach);
@@ -591,6 +653,12 @@ PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory
   return Judge(pair, options, memory, scratch, counters).decide();
 }
 
+PairVerdict judge_by_brute_force(const ModelPair& pair, const QueryOptions& options,
+                                 NarrowScratch& scratch, QueryCounters& counters) {
+  PairMemory memory;
+  return Judge(pair, options, memory, scratch, counters).decide_by_brute_force();
+}
+
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
                           const KeptOff& kept_off_a, const KeptOff& kept_off_b,
                           NarrowScratch& scratch, QueryCounters& counters) {
@@ -609,7 +677,12 @@ double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
           for (const ModelTriangle& b : pair.b.triangles().subspan(leaf_b.first, leaf_b.count)) {
             if (holes == HoleMode::Paper && b.is_hole) continue;
             ++counters.triangle_tests;
-            if (apart_by_planes(a, a_B, b) > best) continue;
+            const double reach = best + a.slack_mm + b.slack_mm;
+            if (apart_by_planes(a, a_B, b) > best || box_gap(a_B.corners_B, b.corners) > reach ||
+                beyond_edges(b.corners, b.normal, a_B.corners_B) > reach ||
+                beyond_edges(a_B.corners_B, a_B.normal_B, b.corners) > reach) {
+              continue;
+            }
             const ClosestPair closest =
                 closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
             best =

@@ -81,6 +81,10 @@ struct PairMemory {
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters);
 
+/// The same by looking at all pairs of facets. Reference for tests.
+PairVerdict judge_by_brute_force(const ModelPair& pair, const QueryOptions& options,
+                                 NarrowScratch& scratch, QueryCounters& counters);
+
 /// Lower bound of the distance of the two solids without what is kept off the other one, up to
 /// `cap_mm`; 0 where they touch or overlap.
 double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,

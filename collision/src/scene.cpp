@@ -141,17 +141,9 @@ std::span<const ThreadRelief> CollisionScene::Impl::reliefs_in(BodyId a, BodyId 
 
 PairVerdict CollisionScene::Impl::judge_bodies(BodyId a, const Pose& X_WA, BodyId b,
                                                const QueryOptions& options, PairMemory& memory) {
-  const Body& body_a = bodies[a.value];
-  const Body& body_b = bodies[b.value];
-  const Pose X_BA = body_b.X_WB.inverse() * X_WA;
-  const ModelPair pair{body_a.element->model(),
-                       body_b.element->model(),
-                       body_a.element->obb(),
-                       body_b.element->obb(),
-                       X_BA,
-                       reliefs_in(a, b, X_BA)};
-  PairVerdict verdict = judge(pair, options, memory, scratch, counters);
-  verdict.witness_W = body_b.X_WB * verdict.witness_W;
+  const PlacedPair placed(*this, a, X_WA, b);
+  PairVerdict verdict = judge(placed.pair, options, memory, scratch, counters);
+  verdict.witness_W = bodies[b.value].X_WB * verdict.witness_W;
   return verdict;
 }
 
@@ -277,6 +269,28 @@ std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> movin
     if (!impl_->check_mover(mover, options)) break;
   }
   return impl_->verdicts;
+}
+
+std::vector<BodyVerdict> CollisionScene::check_brute_force(std::span<const BodyId> moving,
+                                                           std::span<const Pose> poses,
+                                                           const QueryOptions& options) {
+  expect_valid(options);
+  DOWEL_EXPECTS(moving.size() == poses.size());
+  std::vector<BodyVerdict> result;
+  const Impl::MovingMark mark(*impl_, moving);
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    for (std::uint32_t other = 0; other < impl_->bodies.size(); ++other) {
+      const Impl::Body& body = impl_->bodies[other];
+      if (body.element == nullptr || body.is_moving) continue;
+      const Impl::PlacedPair placed(*impl_, moving[i], poses[i], BodyId{other});
+      PairVerdict verdict =
+          judge_by_brute_force(placed.pair, options, impl_->scratch, impl_->counters);
+      if (verdict.verdict == Verdict::Clear) continue;
+      verdict.witness_W = body.X_WB * verdict.witness_W;
+      result.push_back({moving[i], BodyId{other}, verdict});
+    }
+  }
+  return result;
 }
 
 std::vector<BodyVerdict> CollisionScene::check_all(const QueryOptions& options) {

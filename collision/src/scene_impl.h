@@ -61,6 +61,22 @@ struct CollisionScene::Impl {
     std::span<const BodyId> moving_;
   };
 
+  /// Body a, were it at X_WA, as body b sees it.
+  struct PlacedPair {
+    PlacedPair(Impl& impl, BodyId a, const Pose& X_WA, BodyId b)
+        : PlacedPair(impl, a, b, impl.bodies[b.value].X_WB.inverse() * X_WA) {}
+    ModelPair pair;
+
+   private:
+    PlacedPair(Impl& impl, BodyId a, BodyId b, const Pose& X_BA)
+        : pair{impl.bodies[a.value].element->model(),
+               impl.bodies[b.value].element->model(),
+               impl.bodies[a.value].element->obb(),
+               impl.bodies[b.value].element->obb(),
+               X_BA,
+               impl.reliefs_in(a, b, X_BA)} {}
+  };
+
   Body& body(BodyId id);
 
   /// Verdict on body a placed at X_WA and body b where it stands; witness in the world.

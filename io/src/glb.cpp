@@ -29,7 +29,7 @@ using nlohmann::json;
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 
 // Numbers that the glTF 2.0 specification gives to what they are named after.
-constexpr std::uint32_t kMagic = 0x46546C67;
+constexpr std::uint32_t kGlbMagic = 0x46546C67;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
 constexpr int kArrayBuffer = 34962;
@@ -104,7 +104,7 @@ class GlbBuilder {
     }
     std::string glb;
     glb.reserve(total);
-    append_uint32(glb, kMagic);
+    append_uint32(glb, kGlbMagic);
     append_uint32(glb, 2);
     append_uint32(glb, static_cast<std::uint32_t>(total));
     append_chunk(glb, kJsonChunk, text);

@@ -18,17 +18,17 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-struct EdgeUse {
+struct HalfEdge {
   std::uint32_t low = 0;
   std::uint32_t high = 0;
   std::uint32_t triangle = 0;
   std::uint32_t side = 0;  ///< the triangle's edge from corner `side` to the next
 
-  bool same_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
+  bool same_edge(const HalfEdge& other) const { return low == other.low && high == other.high; }
 };
 
-std::vector<EdgeUse> sorted_uses(const FacetedSolid& mesh) {
-  std::vector<EdgeUse> uses;
+std::vector<HalfEdge> sorted_uses(const FacetedSolid& mesh) {
+  std::vector<HalfEdge> uses;
   uses.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -37,7 +37,7 @@ std::vector<EdgeUse> sorted_uses(const FacetedSolid& mesh) {
       uses.push_back({std::min(a, b), std::max(a, b), t, k});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
+  std::sort(uses.begin(), uses.end(), [](const HalfEdge& a, const HalfEdge& b) {
     if (a.low != b.low) return a.low < b.low;
     if (a.high != b.high) return a.high < b.high;
     return a.triangle < b.triangle;
@@ -48,11 +48,11 @@ std::vector<EdgeUse> sorted_uses(const FacetedSolid& mesh) {
 using Neighbours = std::vector<std::array<std::uint32_t, 3>>;
 
 Neighbours neighbours_of(const FacetedSolid& mesh) {
-  const std::vector<EdgeUse> uses = sorted_uses(mesh);
+  const std::vector<HalfEdge> uses = sorted_uses(mesh);
   Neighbours neighbours(mesh.triangles.size(), {kNone, kNone, kNone});
   for (std::size_t i = 1; i < uses.size(); ++i) {
-    const EdgeUse& a = uses[i - 1];
-    const EdgeUse& b = uses[i];
+    const HalfEdge& a = uses[i - 1];
+    const HalfEdge& b = uses[i];
     if (!a.same_edge(b)) continue;
     neighbours[a.triangle][a.side] = b.triangle;
     neighbours[b.triangle][b.side] = a.triangle;
@@ -199,7 +199,7 @@ void set_edges(const Neighbours& neighbours, FacetedSolid& mesh) {
 }  // namespace
 
 MeshEdgeCounts count_edges(const FacetedSolid& mesh) {
-  const std::vector<EdgeUse> uses = sorted_uses(mesh);
+  const std::vector<HalfEdge> uses = sorted_uses(mesh);
   MeshEdgeCounts counts;
   for (std::size_t first = 0; first < uses.size();) {
     std::size_t last = first + 1;

@@ -7,7 +7,7 @@
 namespace dowel {
 namespace {
 
-constexpr char32_t kReplacement = 0xFFFD;
+constexpr char32_t kNoCharacter = 0xFFFD;
 
 /// The character at the start of `text` and the number of bytes it takes. A byte that starts no
 /// well-formed sequence counts as one replacement character.
@@ -24,13 +24,13 @@ std::pair<char32_t, std::size_t> decode_utf8(std::string_view text) {
   } else if (lead >= 0xF0 && lead < 0xF8) {
     length = 4, character = lead & 0x07U, smallest = 0x10000;
   }
-  if (length == 0 || length > text.size()) return {kReplacement, 1};
+  if (length == 0 || length > text.size()) return {kNoCharacter, 1};
   for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0U) != 0x80U) return {kReplacement, 1};
+    if ((byte(i) & 0xC0U) != 0x80U) return {kNoCharacter, 1};
     character = (character << 6U) | (byte(i) & 0x3FU);
   }
   const bool surrogate = character >= 0xD800 && character < 0xE000;
-  if (character < smallest || character > 0x10FFFF || surrogate) return {kReplacement, 1};
+  if (character < smallest || character > 0x10FFFF || surrogate) return {kNoCharacter, 1};
   return {character, length};
 }
 

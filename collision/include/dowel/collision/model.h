@@ -20,6 +20,11 @@ struct BvhNode {
   Eigen::Vector3d max;
   std::uint32_t first = 0;  ///< leaf: first triangle; inner node: left child, the right one is next
   std::uint32_t count = 0;  ///< triangles of a leaf; 0: inner node
+  /// A cone that holds the normals of all its facets: its axis, and cosine and sine of the angle
+  /// that they spread about it; cosine 0: any.
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
+  float cosine = 0.0F;
+  float sine = 1.0F;
 
   bool is_leaf() const noexcept { return count != 0; }
 };
@@ -123,6 +128,7 @@ class CollisionModel {
  private:
   void build_triangles(std::span<const std::uint32_t> hole_faces);
   void build_tree();
+  void set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const;
   void find_overhangs();
   void find_inner_points();
   void find_main_planes();

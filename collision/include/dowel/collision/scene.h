@@ -98,6 +98,11 @@ class CollisionScene {
   std::span<const BodyVerdict> check(std::span<const BodyId> moving, std::span<const Pose> poses,
                                      const QueryOptions& options);
 
+  /// The same by looking at all facets of all bodies. Reference for tests.
+  std::vector<BodyVerdict> check_brute_force(std::span<const BodyId> moving,
+                                             std::span<const Pose> poses,
+                                             const QueryOptions& options);
+
   /// All pairs of the scene that are not clear, `moving < with`, sorted.
   std::vector<BodyVerdict> check_all(const QueryOptions& options);
 
