@@ -34,11 +34,6 @@ Catalog open(const std::string& file) {
   return Catalog(file, Catalog::Access::ReadOnly);
 }
 
-/// "1 element", "2 elements"
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string size_text(const Element& element) {
   const Eigen::Vector3d size = box_size_mm(element);
   return short_number(size.x()) + " x " + short_number(size.y()) + " x " + short_number(size.z());

@@ -9,6 +9,7 @@
 #include "console_commands.h"
 #include "console_text.h"
 #include "dowel/assembly/suggest.h"
+#include "table.h"
 
 namespace dowel::tools {
 namespace {

@@ -27,7 +27,7 @@ std::string turn_text(const Pose& pose) {
   return text == "0" ? "not turned" : text + " deg about " + point_text(turn.axis());
 }
 
-std::string size_text(const Element& element) {
+std::string dimensions_text(const Element& element) {
   const Eigen::Vector3d size = box_size_mm(element);
   return length_text(size.x()) + " x " + length_text(size.y()) + " x " + length_text(size.z());
 }
@@ -52,7 +52,8 @@ Reply list_elements(Session& session) {
   const std::vector<std::string> names = session.element_names();
   for (const std::string& name : names) {
     const Element& element = session.element(name);
-    table.add({name, size_text(element), std::to_string(count_features(element, FeatureKind::Hole)),
+    table.add({name, dimensions_text(element),
+               std::to_string(count_features(element, FeatureKind::Hole)),
                std::to_string(count_features(element, FeatureKind::Shaft))});
     reply.json["elements"].push_back(to_summary_json(element));
   }
@@ -165,7 +166,7 @@ Reply run_show(Console& console, Arguments& arguments) {
     reply.text += "\n";
   }
   reply.text += element.name + ": " + std::string(to_string(element.shape)) + ", " +
-                size_text(element) + " mm, " + length_text(element.volume_mm3) + " mm3\n  " +
+                dimensions_text(element) + " mm, " + length_text(element.volume_mm3) + " mm3\n  " +
                 counted(count_features(element, FeatureKind::Hole), "hole") + ", " +
                 counted(count_features(element, FeatureKind::Shaft), "shaft") + ", " +
                 counted(count_features(element, FeatureKind::Face), "face");

@@ -15,10 +15,6 @@ double rounded(double length_mm) {
 
 }  // namespace
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 std::string length_text(double length_mm) {
   return short_number(rounded(length_mm));
 }

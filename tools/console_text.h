@@ -10,9 +10,6 @@
 
 namespace dowel::tools {
 
-/// "1 mate", "2 mates"
-std::string counted(std::size_t count, const std::string& noun);
-
 /// To a tenth of a micrometre, so that rounding does not show: "12.5 0 -30".
 std::string point_text(const Eigen::Vector3d& point);
 

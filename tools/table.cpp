@@ -64,4 +64,8 @@ std::string Table::text() const {
   return result;
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace dowel::tools

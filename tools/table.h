@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -32,6 +33,9 @@ class Table {
 
 /// `text` without what would move a terminal's cursor.
 std::string printable(std::string_view text);
+
+/// "1 element", "2 elements"
+std::string counted(std::size_t count, const std::string& noun);
 
 /// With six digits: "12", "0.0833333", "1e+06".
 std::string short_number(double value);

@@ -43,12 +43,12 @@ std::string hole_prefix(const Feature& hole) {
   return hole.through ? "h" : "b";
 }
 
-struct Side {
+struct NamedSide {
   const char* name;
   Eigen::Vector3d normal;
 };
 
-std::array<Side, 6> sides() {
+std::array<NamedSide, 6> sides() {
   return {{{"top", Eigen::Vector3d::UnitZ()},
            {"bottom", -Eigen::Vector3d::UnitZ()},
            {"right", Eigen::Vector3d::UnitX()},
@@ -119,7 +119,7 @@ std::vector<Feature> named_shafts(const std::vector<Feature>& shafts) {
 std::vector<Feature> named_faces(const std::vector<Feature>& faces) {
   std::vector<Feature> result;
   std::vector<bool> is_named(faces.size(), false);
-  for (const Side& side : sides()) {
+  for (const NamedSide& side : sides()) {
     if (const std::optional<std::size_t> face = outermost(faces, side.normal)) {
       result.push_back(faces[*face]);
       result.back().name = side.name;

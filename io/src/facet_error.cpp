@@ -19,16 +19,16 @@ using Eigen::Vector3d;
 
 /// Barycentric samples: corners, edge midpoints, centroid, and the middles of the lines from the
 /// centroid's side to each corner, because the worst point of a facet is rarely the centroid.
-constexpr std::array<std::array<double, 3>, 10> kFewestSamples{{{1, 0, 0},
-                                                          {0, 1, 0},
-                                                          {0, 0, 1},
-                                                          {0.5, 0.5, 0},
-                                                          {0, 0.5, 0.5},
-                                                          {0.5, 0, 0.5},
-                                                          {1.0 / 3, 1.0 / 3, 1.0 / 3},
-                                                          {0.5, 0.25, 0.25},
-                                                          {0.25, 0.5, 0.25},
-                                                          {0.25, 0.25, 0.5}}};
+constexpr std::array<std::array<double, 3>, 10> kProbes{{{1, 0, 0},
+                                                         {0, 1, 0},
+                                                         {0, 0, 1},
+                                                         {0.5, 0.5, 0},
+                                                         {0, 0.5, 0.5},
+                                                         {0.5, 0, 0.5},
+                                                         {1.0 / 3, 1.0 / 3, 1.0 / 3},
+                                                         {0.5, 0.25, 0.25},
+                                                         {0.25, 0.5, 0.25},
+                                                         {0.25, 0.25, 0.5}}};
 
 template <class Vector>
 Vector combine(const std::array<Vector, 3>& corners, const std::array<double, 3>& weights) {
@@ -82,7 +82,7 @@ double error_of_other(const TopoDS_Face& face, const Poly_Triangulation& facets,
       const gp_Pnt2d at = facets.UVNode(nodes[k]);
       uv[k] = {at.X(), at.Y()};
     }
-    for (const auto& weights : kFewestSamples) {
+    for (const auto& weights : kProbes) {
       const double distance =
           distance_near(surface, combine(corners, weights), combine(uv, weights), worst);
       if (std::isfinite(distance)) worst = std::max(worst, distance);
@@ -105,7 +105,7 @@ double facet_error_mm(const TopoDS_Face& face, const Poly_Triangulation& facets,
     for (std::size_t k = 0; k < 3; ++k) {
       corners[k] = to_eigen(facets.Node(nodes[k]).Transformed(placement));
     }
-    for (const auto& weights : kFewestSamples) {
+    for (const auto& weights : kProbes) {
       worst = std::max(worst, std::abs(signed_distance_mm(surface, combine(corners, weights))));
     }
   }

@@ -13,6 +13,9 @@
 
 namespace dowel::testing {
 
+/// What rounding alone may move.
+inline constexpr double kExact_mm = 1e-9;
+
 inline Feature face_feature(const std::string& name, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& normal, double area_mm2) {
   Feature face;

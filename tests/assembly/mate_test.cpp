@@ -23,8 +23,6 @@ namespace testing = dowel::testing;
 
 namespace {
 
-constexpr double kExact_mm = 1e-9;
-
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
 Feature through_hole(double depth_mm) {
@@ -48,7 +46,7 @@ Eigen::Vector3d far_end(const PlacedFeature& f) {
 
 void check_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   CAPTURE(a.transpose(), b.transpose());
-  CHECK((a - b).norm() < kExact_mm);
+  CHECK((a - b).norm() < testing::kExact_mm);
 }
 
 double angle_between(const Pose& a, const Pose& b) {
@@ -130,7 +128,7 @@ TEST_CASE("mates put the features where their kind says, at random poses", "[pro
     const PlacedFeature f{&under, placed.X_WA};
     const Eigen::Vector3d n = g.direction_W();
     check_near(f.direction_W(), -n);
-    CHECK(n.dot(f.origin_W() - g.origin_W()) == Approx(lift).margin(kExact_mm));
+    CHECK(n.dot(f.origin_W() - g.origin_W()) == Approx(lift).margin(testing::kExact_mm));
     const Eigen::Vector3d moved = f.origin_W() - before.origin_W();
     check_near(moved - n.dot(moved) * n, Eigen::Vector3d::Zero());
   }
@@ -182,7 +180,8 @@ TEST_CASE("a seat takes over place and sense along the axis", "[property]") {
   const PlacedFeature m{&moving_face, placed.X_WA};
   const PlacedFeature s{&fixed_face, X_WB};
   check_near(m.direction_W(), -s.direction_W());
-  CHECK(s.direction_W().dot(m.origin_W() - s.origin_W()) == Approx(lift).margin(kExact_mm));
+  CHECK(s.direction_W().dot(m.origin_W() - s.origin_W()) ==
+        Approx(lift).margin(testing::kExact_mm));
   const PlacedFeature shaft_W{&f, placed.X_WA};
   const Eigen::Vector3d off = shaft_W.origin_W() - hole.origin_W();
   check_near(off.cross(hole.direction_W()), Eigen::Vector3d::Zero());
@@ -214,17 +213,17 @@ TEST_CASE("a fresh mate has no residual and a disturbed one tells by how much", 
       }
       ++mates;
       const auto off = mate_residual({&f, placed->X_WA}, there, {}, options);
-      CHECK(off.axis_mm < kExact_mm);
+      CHECK(off.axis_mm < testing::kExact_mm);
       CHECK(off.angle_rad < 1e-9);
-      CHECK(std::abs(off.along_mm) < kExact_mm);
+      CHECK(std::abs(off.along_mm) < testing::kExact_mm);
 
       const bool is_face = g.kind == dowel::FeatureKind::Face;
       const Eigen::Vector3d axis = there.direction_W();
       const Eigen::Vector3d side = axis.unitOrthogonal();
       const Pose moved = Pose::from_translation(0.3 * axis + 0.4 * side) * placed->X_WA;
       const auto disturbed = mate_residual({&f, moved}, there, {}, options);
-      CHECK(disturbed.axis_mm == Approx(is_face ? 0.0 : 0.4).margin(kExact_mm));
-      CHECK(std::abs(disturbed.along_mm) == Approx(0.3).margin(kExact_mm));
+      CHECK(disturbed.axis_mm == Approx(is_face ? 0.0 : 0.4).margin(testing::kExact_mm));
+      CHECK(std::abs(disturbed.along_mm) == Approx(0.3).margin(testing::kExact_mm));
       const Pose tilted = Pose::about_axis(there.origin_W(), side, 0.01) * placed->X_WA;
       CHECK(mate_residual({&f, tilted}, there, {}, options).angle_rad == Approx(0.01).margin(1e-9));
     }

@@ -21,8 +21,6 @@ namespace testing = dowel::testing;
 
 namespace {
 
-constexpr double kExact_mm = 1e-9;
-
 /// A session in memory with the fixture catalogue.
 struct Workshop {
   testing::TemporaryFolder folder;
@@ -59,14 +57,14 @@ TEST_CASE("a riser is screwed to a plate: seats touch, threads overlap, nothing 
   const MoveReport riser = shop.insert({"RISER1", "h1"}, {"PLATE1", "B3"});
   CHECK_FALSE(riser.refused);
   CHECK(riser.verdict == Verdict::Contact);
-  CHECK((shop.where("RISER1") - Eigen::Vector3d(0, 0, 40)).norm() < kExact_mm);
+  CHECK((shop.where("RISER1") - Eigen::Vector3d(0, 0, 40)).norm() < testing::kExact_mm);
 
   CHECK(shop.place("T/screw-M12x65", "", {300, 0, 0}).verdict == Verdict::Clear);
   const MoveReport screw = shop.insert({"SCREW1", "pin1"}, {"RISER1", "h1"});
   INFO((screw.touches.empty() ? std::string() : screw.touches.front().with));
   CHECK_FALSE(screw.refused);
   CHECK(screw.verdict == Verdict::Contact);
-  CHECK((shop.where("SCREW1") - Eigen::Vector3d(0, 0, 15)).norm() < kExact_mm);
+  CHECK((shop.where("SCREW1") - Eigen::Vector3d(0, 0, 15)).norm() < testing::kExact_mm);
   CHECK(dowel::worst(shop.session.check_all()) == Verdict::Contact);
 }
 
@@ -79,7 +77,7 @@ TEST_CASE("a screw goes in and out of its thread along the axis and nowhere else
   REQUIRE(in.made);
   CHECK(in.made->thread);
   const Eigen::Vector3d seated = shop.where("SCREW1");
-  CHECK((seated - Eigen::Vector3d(0, 0, 5)).norm() < kExact_mm);
+  CHECK((seated - Eigen::Vector3d(0, 0, 5)).norm() < testing::kExact_mm);
   const MoveReport out = shop.session.move("SCREW1", seated + Eigen::Vector3d(0, 0, 0.5), "out");
   CHECK_FALSE(out.refused);
   CHECK(out.dropped.size() == 1);  // it left its place along the axis
@@ -156,7 +154,7 @@ TEST_CASE("a turn is checked along its arc, also past the half turn") {
   CHECK(back.free_share > 0.2);
   CHECK(back.free_share < 0.5);
   CHECK_FALSE(shop.session.rotate("A", {0, 0, 0}, up, -std::numbers::pi, "front").refused);
-  CHECK((shop.where("A") - Eigen::Vector3d(-100, 0, 0)).norm() < kExact_mm);
+  CHECK((shop.where("A") - Eigen::Vector3d(-100, 0, 0)).norm() < testing::kExact_mm);
   CHECK_FALSE(shop.session.rotate("A", {0, 0, 0}, up, 0.75, "on").refused);
   CHECK(shop.session.rotate("A", {0, 0, 0}, up, 2.0 * std::numbers::pi, "around").refused);
 }
@@ -175,7 +173,7 @@ TEST_CASE("a shaft thicker than the bore is refused with the numbers") {
   CHECK_THROWS_WITH(shop.insert({"PIN", "pin1"}, {"P", "B3"}), Catch::Contains("10.106 mm wide"));
   const MoveReport held = shop.insert({"PIN", "pin1"}, {"P", "B3"}, {.offset_mm = 15});
   CHECK_FALSE(held.refused);
-  CHECK((shop.where("PIN") - Eigen::Vector3d(0, 0, 25)).norm() < kExact_mm);
+  CHECK((shop.where("PIN") - Eigen::Vector3d(0, 0, 25)).norm() < testing::kExact_mm);
 }
 
 TEST_CASE("mates that a move breaks are dropped, and come back with undo") {
