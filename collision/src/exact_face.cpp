@@ -17,6 +17,9 @@ constexpr double kSheetSlacks = 4.0;
 /// Barycentric slack of "inside the triangle", relative: rounding only.
 constexpr double kInsideSlack = 1e-9;
 
+/// A place this close to a chord, rounding, is on it, and so between it and its arc.
+constexpr double kOnChord_mm = 1e-9;
+
 /// The search along an arc ends when the way to the asked point is this nearly at a right angle to
 /// it (radians; the distance is then right to half its square), or after so many steps.
 constexpr double kArcAccuracy = 1e-7;
@@ -80,7 +83,7 @@ bool overhangs_rim(const CollisionModel& model, std::uint32_t index, const Eigen
   return std::ranges::any_of(model.overhangs(index), [&](const Chord& chord) {
     const ModelTriangle& t = model.triangles()[chord.triangle];
     const double beyond = beyond_edge(t, chord.edge, c);
-    return beyond < 0.0 && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
+    return beyond <= kOnChord_mm && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
            !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
   });
 }

@@ -463,6 +463,12 @@ class Judge {
       return true;
     }
     if (is_between_faces(i, j, closest.on_b)) return true;
+    const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
+    if (const auto place =
+            find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(slack))) {
+      touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
+      return true;
+    }
     apart = options_.tolerance_mm;
     return false;
   }
@@ -562,7 +568,7 @@ class Judge {
       return false;
     }
     note_method(a, b, slack);
-    const double reach = kReachTolerances * options_.tolerance_mm + kReachSlacks * slack;
+    const double reach = reach_mm(slack);
     const auto crossing =
         crossing_segment(shifted(a_B.corners_B, -erosion_mm_ * a_B.normal_B), a_B.normal_B,
                          shifted(b.corners, -erosion_mm_ * b.normal), b.normal);
@@ -580,6 +586,11 @@ class Judge {
     const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
     return closest.distance_squared_mm2 <= margin * margin &&
            try_start(0.5 * (closest.on_a + closest.on_b), i, j, reach);
+  }
+
+  /// How far a witness may lie from its start.
+  double reach_mm(double slack) const {
+    return kReachTolerances * options_.tolerance_mm + kReachSlacks * slack;
   }
 
   void note_method(const ModelTriangle& a, const ModelTriangle& b, double slack) {

@@ -24,7 +24,7 @@ constexpr int kDeepenings = 8;
 
 constexpr std::size_t kMaxConstraints = 4;
 constexpr int kRounds = 8;
-constexpr int kNewtonSteps = 3;
+constexpr int kNewtonSteps = 6;
 
 enum class Side : std::uint8_t { A, B };
 
@@ -46,7 +46,8 @@ class Search {
   Search(const ModelPair& pair, double depth_mm)
       : pair_(pair), X_AB_(pair.X_BA.inverse()), depth_mm_(depth_mm) {}
 
-  double enough_mm() const { return depth_mm_ * (1.0 - kDepthSlack); }
+  double enough_mm() const { return depth_mm_ - kDepthSlack * std::abs(depth_mm_); }
+  bool is_for_contact() const { return depth_mm_ < 0.0; }
 
   void add_triangle(Side side, std::uint32_t triangle) {
     const CollisionModel& m = model(side);
@@ -73,7 +74,7 @@ class Search {
         slopes.row(static_cast<Eigen::Index>(i)) = d.inward_B.transpose();
         misses[static_cast<Eigen::Index>(i)] = depth_mm_ - d.depth_mm;
       }
-      if (misses.cwiseAbs().maxCoeff() <= 0.1 * kDepthSlack * depth_mm_) break;
+      if (misses.cwiseAbs().maxCoeff() <= 0.1 * kDepthSlack * std::abs(depth_mm_)) break;
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConstraints, kMaxConstraints>
           normal = slopes * slopes.transpose();
       normal.diagonal().array() += kRegularisation;
@@ -129,6 +130,7 @@ class Search {
   }
 
   bool in_relief(const Eigen::Vector3d& p) const {
+    if (is_for_contact()) return false;
     return std::ranges::any_of(pair_.reliefs_B, [&](const ThreadRelief& relief) {
       const Eigen::Vector3d from_start = p - relief.start;
       const double along = relief.direction.dot(from_start);
@@ -170,6 +172,7 @@ std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double 
     bool learned = false;
     bool is_near = false;
     for (const Side side : {Side::A, Side::B}) {
+      if (search.is_for_contact()) break;
       if (const auto near = search.read_if_near(side, p)) {
         is_near = true;
         learned = search.add(near->nearest) || learned;
@@ -198,6 +201,12 @@ std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d
   search.add_triangle(Side::A, triangle_a);
   search.add_triangle(Side::B, triangle_b);
   return run(search, start_B, reach_mm);
+}
+
+std::optional<Witness> find_touch(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                  std::uint32_t triangle_a, std::uint32_t triangle_b, double gap_mm,
+                                  double reach_mm) {
+  return find_witness(pair, start_B, triangle_a, triangle_b, -0.5 * gap_mm, reach_mm);
 }
 
 std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,

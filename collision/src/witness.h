@@ -26,7 +26,13 @@ std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d
                                     std::uint32_t triangle_a, std::uint32_t triangle_b,
                                     double depth_mm, double reach_mm);
 
-/// The same from a start that is known to have been a witness in another pose.
+/// A point no further than `gap_mm` / 2 from both exact solids: there they touch at that gap. The
+/// same search, for solids that are grown instead of shrunk; depths are negative outside.
+std::optional<Witness> find_touch(const ModelPair& pair, const Eigen::Vector3d& start_B,
+                                  std::uint32_t triangle_a, std::uint32_t triangle_b, double gap_mm,
+                                  double reach_mm);
+
+/// A witness from a start that was one in another pose.
 std::optional<Witness> find_witness(const ModelPair& pair, const Eigen::Vector3d& start_B,
                                     double depth_mm, double reach_mm);
 

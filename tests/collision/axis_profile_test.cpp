@@ -1,0 +1,141 @@
+#include "dowel/collision/axis_profile.h"
+
+#include <catch2/catch.hpp>
+
+#include "collision_element.h"
+#include "dowel/collision/model.h"
+#include "random_geometry.h"
+#include "solids.h"
+
+using dowel::AxisProfile;
+using dowel::AxisProfiles;
+using dowel::CollisionModel;
+using dowel::Fit;
+using dowel::Pose;
+namespace testing = dowel::testing;
+
+namespace {
+
+CollisionModel model_of(dowel::FacetedSolid solid) {
+  return {std::make_shared<const dowel::FacetedSolid>(std::move(solid)), {}};
+}
+
+/// Heights of the profile's steps along z, whatever the direction of its axis, as from, to, radius.
+std::vector<std::array<double, 3>> steps_along_z(const AxisProfile& profile) {
+  std::vector<std::array<double, 3>> result;
+  for (const dowel::ProfileStep& step : profile.steps) {
+    const double z0 = (profile.origin + step.from_mm * profile.direction).z();
+    const double z1 = (profile.origin + step.to_mm * profile.direction).z();
+    result.push_back({std::min(z0, z1), std::max(z0, z1), step.radius_mm});
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a screw-like pin has one shaft whose steps are its cylinders") {
+  const CollisionModel model = model_of(testing::stepped_pin({{6.0, 30}, {9.0, 12}}, 20));
+  const AxisProfiles& profiles = model.profiles();
+  REQUIRE(profiles.shafts.size() == 1);
+  CHECK(profiles.bores.empty());
+  const auto steps = steps_along_z(profiles.shafts[0]);
+  REQUIRE(steps.size() == 2);
+  CHECK(steps[0][2] == Approx(6.0).epsilon(1e-12));
+  CHECK(steps[1][2] == Approx(9.0).epsilon(1e-12));
+  CHECK(steps[0][1] == Approx(30.0));
+  for (const auto& step : profiles.shafts[0].steps) CHECK(step.is_round);
+}
+
+TEST_CASE("a bore knows its counterbore, its bottom and that nothing is before its mouth") {
+  testing::DrilledHole hole{0, 0, 6.0, 25.0, 10.0, 8.0};
+  const CollisionModel model = model_of(testing::plate_with_holes({60, 60, 40}, {hole}, 20));
+  REQUIRE(model.profiles().bores.size() == 1);
+  CHECK(model.profiles().shafts.empty());
+  const auto steps = steps_along_z(model.profiles().bores[0]);
+  REQUIRE(steps.size() == 3);
+  CHECK(steps[0][2] == 0.0);  // under the bottom
+  CHECK(steps[0][1] == Approx(15.0));
+  CHECK(steps[1][2] == Approx(6.0).epsilon(1e-12));
+  CHECK(steps[2][2] == Approx(10.0).epsilon(1e-12));
+  CHECK(steps[2][1] == Approx(40.0));
+}
+
+TEST_CASE("the air about a bore ends at what stands beside it") {
+  // A wall on the plate, 12 mm from the axis, reaches over the bore's mouth.
+  const CollisionModel model = model_of(testing::merged(
+      testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 20),
+      testing::transformed(Pose::from_translation({22, 0, 25.5}), testing::box({20, 20, 10}))));
+  REQUIRE(model.profiles().bores.size() == 1);
+  const auto steps = steps_along_z(model.profiles().bores[0]);
+  REQUIRE(steps.size() >= 2);
+  CHECK(steps.front()[2] == Approx(6.0).epsilon(1e-12));
+  CHECK(steps.back()[2] == Approx(12.0));
+  CHECK(steps.back()[0] == Approx(20.5));
+}
+
+TEST_CASE("a fit is free exactly where the cylinders leave room", "[property]") {
+  // The seat, the counterbore and the tilt are analytic: clearance less offset less tilt.
+  const CollisionModel plate = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 16));
+  const AxisProfile& bore = plate.profiles().bores[0];
+  testing::RandomGeometry random(41);
+  const double t = 0.001;
+  int free = 0;
+  int blocked = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double clearance = std::pow(10.0, random.uniform(-3.0, 0.0));
+    const double offset = random.uniform(0.0, 1.5) * clearance;
+    const double radius = 6.0 - clearance;
+    AxisProfile shaft;
+    shaft.steps = {{0.0, 30.0, radius, true}, {30.0, 36.0, 9.0, true}};
+    const double direction = random.uniform(0.0, 7.0);
+    const double turn = random.uniform(0.0, 7.0);
+    // The head is seated on the plate or above it.
+    const double above = i % 2 == 0 ? 0.0 : random.uniform(0.0, 5.0);
+    const Pose X_VS(Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ())),
+                    {offset * std::cos(direction), offset * std::sin(direction), -10.0 + above});
+    const double gap = clearance - offset;
+    if (std::abs(gap + t) < 1e-3 * t || std::abs(gap) < 1e-9) continue;
+    const Fit fitted = fit(shaft, bore, X_VS, t, {});
+    CAPTURE(i, clearance, offset, above);
+    REQUIRE(fitted.is_free == (gap > -t));
+    if (fitted.is_free) REQUIRE(fitted.gap_mm == Approx(std::min(gap, above)).margin(1e-9));
+    if (fitted.gap_is_met) REQUIRE(fitted.gap_mm == Approx(gap).margin(1e-9));
+    free += fitted.is_free ? 1 : 0;
+    blocked += fitted.is_free ? 0 : 1;
+  }
+  CHECK(free > 5000);
+  CHECK(blocked > 2000);
+}
+
+TEST_CASE("a pin tilts in its bore until it jams, by the exact cylinders", "[property]") {
+  const double clearance = 0.05;
+  const double length = 20.0;
+  dowel::CollisionScene scene;
+  scene.add(
+      testing::collision_element(testing::plate_with_holes({60, 60, length}, {{0, 0, 6.0}}, 16)),
+      Pose());
+  const auto pin =
+      scene.add(testing::collision_element(testing::cylinder(6.0 - clearance, 60, 18)), Pose());
+  testing::RandomGeometry random(42);
+  const double t = 0.001;
+  for (int i = 0; i < 2000; ++i) {
+    const double angle = random.uniform(0.0, 2.5) * 2.0 * clearance / length;
+    // A cylinder of radius r tilted about the bore's middle: at each mouth the elliptic section
+    // r / cos(angle) is off by half the length times tan(angle).
+    const double play = 6.0 - (6.0 - clearance) / std::cos(angle) - 0.5 * length * std::tan(angle);
+    if (std::abs(play - t) < 0.3 * t || std::abs(play + t) < 0.3 * t) continue;
+    const double turn = random.uniform(0.0, 7.0);
+    const Eigen::Vector3d about(std::cos(turn), std::sin(turn), 0.0);
+    const std::array<Pose, 1> poses{Pose::about_axis({0, 0, 0.5 * length}, about, angle) *
+                                    Pose::from_translation({0, 0, -20})};
+    const std::array<dowel::BodyId, 1> moving{pin};
+    const auto verdict = worst(scene.check(moving, poses, {.tolerance_mm = t}));
+    CAPTURE(i, angle, play);
+    if (play > t) REQUIRE(verdict == dowel::Verdict::Clear);
+    if (play < t && play > -t) REQUIRE(verdict == dowel::Verdict::Contact);
+    // The ball between a corner and the bore's wall is smaller than the miss: a corner of about
+    // half a right angle each side leaves it room from 2.5 times on.
+    if (play < -2.5 * t) REQUIRE(verdict == dowel::Verdict::Interference);
+  }
+}

@@ -1,0 +1,232 @@
+// What a scene remembers from move to move: it may save time, and nothing else.
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <thread>
+
+#include <catch2/catch.hpp>
+
+#include "collision_element.h"
+#include "random_geometry.h"
+#include "solids.h"
+
+using dowel::BodyId;
+using dowel::BodyVerdict;
+using dowel::CollisionElement;
+using dowel::CollisionScene;
+using dowel::Pose;
+using dowel::Verdict;
+namespace testing = dowel::testing;
+
+namespace {
+
+/// Allocations of this thread since it began to count.
+thread_local bool is_counting = false;
+thread_local std::size_t allocations = 0;
+
+void* counted_allocation(std::size_t size) {
+  if (is_counting) ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted_allocation(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace {
+
+#ifdef DOWEL_SANITIZED
+constexpr int kMoves = 1'000;
+#else
+constexpr int kMoves = 20'000;
+#endif
+
+constexpr double kTolerance_mm = dowel::kDefaultTolerance_mm;
+constexpr double kTop_mm = 20.0;  // of the plate
+
+/// A plate with two holes, and on it a block, a drilled riser, a post, a wedge.
+struct Surroundings {
+  CollisionScene scene;
+  std::vector<BodyId> bodies;
+
+  Surroundings() {
+    const auto stand = [this](dowel::FacetedSolid solid, double x, double y, double z) {
+      bodies.push_back(scene.add(testing::collision_element(std::move(solid)),
+                                 Pose::from_translation({x, y, z})));
+    };
+    stand(testing::plate_with_holes({120, 80, kTop_mm}, {{-40, 0, 6.0}, {40, 20, 6.0, 12.0}}, 12),
+          0, 0, 0);
+    stand(testing::box({20, 20, 20}, {0, 0, 10}), 0, 25, kTop_mm);
+    stand(testing::plate_with_holes({30, 30, 15}, {{0, 0, 6.5}}, 10), 40, -20, kTop_mm);
+    stand(testing::cylinder(8, 25, 14), -10, -25, kTop_mm);
+    stand(testing::wedge(0.5, 20, 15), -45, 25, kTop_mm);
+  }
+};
+
+/// Places where parts of a fixture are: flush on faces, in holes, beside and in each other.
+Pose anchor(testing::RandomGeometry& random) {
+  constexpr std::array<double, 5> kHeights{kTop_mm, kTop_mm + 15, kTop_mm + 20, 8.0, 0.0};
+  constexpr std::array<std::array<double, 2>, 5> kAxes{
+      {{-40, 0}, {40, 20}, {40, -20}, {0, 0}, {-10, -9}}};
+  const auto& axis = kAxes[random.index(kAxes.size())];
+  return Pose::from_translation({axis[0], axis[1], kHeights[random.index(kHeights.size())]});
+}
+
+/// A small step, a slide along the plate, a turn about z, or any motion; now and then a jump.
+Pose next(testing::RandomGeometry& random, const Pose& pose) {
+  if (random.index(8) == 0) return anchor(random);
+  const double size = std::pow(10.0, random.uniform(-4.0, 1.0));
+  switch (random.index(4)) {
+    case 0:
+      return Pose(pose.rotation(), pose.translation() + random.point(size));
+    case 1: {
+      Eigen::Vector3d shift = random.point(size);
+      shift.z() = 0.0;
+      return Pose(pose.rotation(), pose.translation() + shift);
+    }
+    case 2:
+      return pose * Pose::about_axis({0, 0, 0}, Eigen::Vector3d::UnitZ(), 0.05 * size);
+    default:
+      return Pose::about_axis(pose.translation(), random.direction(), 0.02 * size) * pose;
+  }
+}
+
+/// Who is met and how, as text.
+std::string told(std::span<const BodyVerdict> verdicts) {
+  std::string result;
+  for (const BodyVerdict& v : verdicts) {
+    result += std::to_string(v.with.value) + ' ' + std::string(to_string(v.pair.verdict)) + ' ';
+  }
+  return result;
+}
+
+dowel::FacetedSolid mover(int kind) {
+  switch (kind) {
+    case 0:
+      return testing::cylinder(5.993, 30, 12);
+    case 1:
+      return testing::box({15, 15, 15}, {0, 0, 7.5});
+    default:
+      return testing::stepped_pin({{5.993, 12}, {9.0, 6}}, 12);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a scene that remembers gives the verdicts of one that looks at all facets",
+          "[property]") {
+  const int kind = GENERATE(0, 1, 2);
+  CAPTURE(kind);
+  testing::RandomGeometry random(31);
+  Surroundings world;
+  const BodyId moving = world.scene.add(testing::collision_element(mover(kind)), Pose());
+  const std::array<BodyId, 1> bodies{moving};
+  std::array<int, 3> seen{};
+  int borderline = 0;
+  Pose pose = anchor(random);
+  for (int i = 0; i < kMoves / 3; ++i) {
+    pose = next(random, pose);
+    const std::array<Pose, 1> poses{pose};
+    const auto slow_at = [&](double tolerance_mm) {
+      return told(world.scene.check_brute_force(bodies, poses, {.tolerance_mm = tolerance_mm}));
+    };
+    const std::string fast = told(world.scene.check(bodies, poses, {}));
+    const std::string slow = slow_at(kTolerance_mm);
+    CAPTURE(i, pose.translation().transpose(), pose.rotation().coeffs().transpose(), slow);
+    if (fast != slow) {
+      // Within a twentieth of the tolerance a witness may be found from one start and not another.
+      const bool is_borderline =
+          fast == slow_at(0.95 * kTolerance_mm) || fast == slow_at(1.05 * kTolerance_mm);
+      REQUIRE((is_borderline ? slow : fast) == slow);
+      ++borderline;
+    }
+    seen[0] += slow.empty() ? 1 : 0;
+    seen[1] += slow.find("contact") != std::string::npos ? 1 : 0;
+    seen[2] += slow.find("interference") != std::string::npos ? 1 : 0;
+    // The scene changes, too: the mover is put where it is, or another body a little aside.
+    if (random.index(50) == 0) world.scene.move(moving, pose);
+    if (random.index(100) == 0) {
+      const BodyId other = world.bodies[1 + random.index(4)];
+      world.scene.move(other, Pose::from_translation(random.point(0.01)) * world.scene.pose(other));
+    }
+  }
+  for (const int count : seen) CHECK(count > kMoves / 100);
+  CHECK(borderline < kMoves / 1000);
+}
+
+TEST_CASE("moves allocate nothing once a scene has seen their like") {
+  testing::RandomGeometry random(32);
+  Surroundings world;
+  const BodyId moving = world.scene.add(testing::collision_element(mover(2)), Pose());
+  const std::array<BodyId, 1> bodies{moving};
+  std::vector<Pose> path{anchor(random)};
+  for (int i = 0; i < 500; ++i) path.push_back(next(random, path.back()));
+  const auto follow = [&] {
+    for (const Pose& pose : path) world.scene.check(bodies, std::span(&pose, 1), {});
+  };
+  follow();
+  follow();  // from the end to the start is a move, too
+  allocations = 0;
+  is_counting = true;
+  follow();
+  is_counting = false;
+  CHECK(allocations == 0);
+  is_counting = true;
+  const auto probe = std::make_unique<int>(1);
+  is_counting = false;
+  CHECK(allocations == 1);
+}
+
+TEST_CASE("many scenes in many threads share elements and give the same verdicts") {
+  const auto plate = testing::collision_element(
+      testing::plate_with_holes({120, 80, kTop_mm}, {{-40, 0, 6.0}, {40, 20, 6.0, 12.0}}, 12));
+  const auto pin = testing::collision_element(mover(2));
+  const auto run = [&](std::string& verdicts) {
+    testing::RandomGeometry random(33);
+    CollisionScene scene;
+    scene.add(plate, Pose());
+    const std::array<BodyId, 1> bodies{scene.add(pin, Pose())};
+    Pose pose = anchor(random);
+    for (int i = 0; i < 2000; ++i) {
+      pose = next(random, pose);
+      verdicts += told(scene.check(bodies, std::span(&pose, 1), {}));
+    }
+  };
+  std::array<std::string, 4> results;
+  std::vector<std::thread> threads;
+  threads.reserve(results.size());
+  for (auto& result : results) threads.emplace_back([&] { run(result); });
+  for (std::thread& thread : threads) thread.join();
+  CHECK(results[0].size() > 1000);
+  for (const auto& result : results) CHECK(result == results[0]);
+}
+
+TEST_CASE("a move that is shorter than the known gap costs no test") {
+  Surroundings world;
+  const BodyId moving = world.scene.add(testing::collision_element(mover(1)), Pose());
+  const std::array<BodyId, 1> bodies{moving};
+  const auto check_at = [&](double x) {
+    const std::array<Pose, 1> poses{Pose::from_translation({x, 0, kTop_mm + 2})};
+    return worst(world.scene.check(bodies, poses, {}));
+  };
+  CHECK(check_at(-20) == Verdict::Clear);
+  CHECK(check_at(-19.9) == Verdict::Clear);
+  world.scene.reset_counters();
+  CHECK(check_at(-19.8) == Verdict::Clear);
+  CHECK(check_at(-19.7) == Verdict::Clear);
+  CHECK(world.scene.counters().box_tests == 0);
+  // Something put in the way is seen, however small the move.
+  world.scene.add(testing::collision_element(testing::box({5, 5, 5})),
+                  Pose::from_translation({-19.6, 0, kTop_mm + 5}));
+  CHECK(check_at(-19.6999) == Verdict::Interference);
+}
