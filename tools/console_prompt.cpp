@@ -119,7 +119,7 @@ int run_prompt(Console& console) {
   el_set(line.get(), EL_BIND, "^I", "dowel-complete", nullptr);
   // While a line is edited Ctrl-C is a key; while a command runs it ends the program as ever, and
   // the project is as it was before that command.
-  el_set(line.get(), EL_SETTY, "-d", "intr=", nullptr);
+  el_set(line.get(), EL_SETTY, "-d", "-isig", nullptr);
   el_set(line.get(), EL_ADDFN, "dowel-drop-line", "Drops the line", &drop_line);
   el_set(line.get(), EL_BIND, "^C", "dowel-drop-line", nullptr);
   el_set(line.get(), EL_BIND, "^R", "em-inc-search-prev", nullptr);

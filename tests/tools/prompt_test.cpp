@@ -1,0 +1,95 @@
+// The prompt on a pseudo-terminal.
+
+#include <chrono>
+#include <string>
+
+#include <catch2/catch.hpp>
+#include <poll.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "../assembly/fixture_elements.h"
+#include "program.h"
+
+namespace {
+
+namespace testing = dowel::testing;
+
+/// The program on a terminal of its own.
+class Terminal {
+ public:
+  explicit Terminal(const std::filesystem::path& folder) {
+    child_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (child_ < 0) throw std::runtime_error("forkpty failed");
+    if (child_ == 0) {
+      ::setenv("TERM", "xterm", 1);
+      ::setenv("HOME", folder.c_str(), 1);
+      if (::chdir(folder.c_str()) == 0) {
+        ::execl(DOWEL_PROGRAM, DOWEL_PROGRAM, "--catalog", "catalog.db", nullptr);
+      }
+      ::_exit(127);
+    }
+  }
+  ~Terminal() {
+    ::close(terminal_);
+    if (child_ > 0) ::waitpid(child_, nullptr, 0);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  void type(const std::string& keys) {
+    seen_.clear();
+    if (::write(terminal_, keys.data(), keys.size()) < 0) throw std::runtime_error("write failed");
+  }
+
+  /// What came since the last `type`, up to `text`, or all where that does not come in time.
+  std::string wait_for(const std::string& text) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (seen_.find(text) == std::string::npos && std::chrono::steady_clock::now() < deadline) {
+      pollfd polled{terminal_, POLLIN, 0};
+      if (::poll(&polled, 1, 1000) <= 0) continue;
+      char buffer[4096];
+      const ssize_t count = ::read(terminal_, buffer, sizeof buffer);
+      if (count <= 0) break;  // the program has gone
+      seen_.append(buffer, static_cast<std::size_t>(count));
+    }
+    return seen_;
+  }
+
+  int exit_status() {
+    int status = 0;
+    ::waitpid(std::exchange(child_, -1), &status, 0);
+    return status;
+  }
+
+ private:
+  int terminal_ = -1;
+  pid_t child_ = -1;
+  std::string seen_;
+};
+
+}  // namespace
+
+TEST_CASE("the prompt completes names, drops a line at Ctrl-C and leaves at Ctrl-D") {
+  using Catch::Contains;
+  const testing::TemporaryFolder folder;
+  testing::write_fixture_catalog(folder / "catalog.db");
+  Terminal terminal(folder.path());
+  CHECK_THAT(terminal.wait_for("dowel> "), Contains("`help` lists the commands"));
+  terminal.type("pla\t");
+  CHECK_THAT(terminal.wait_for("place "), Contains("place "));
+  terminal.type("T/blo\t");
+  CHECK_THAT(terminal.wait_for("T/block-40 "), Contains("T/block-40 "));
+  terminal.type("as A\n");
+  CHECK_THAT(terminal.wait_for("clear"), Contains("A: placed at 0 0 0, clear"));
+  terminal.wait_for("dowel> ");
+  terminal.type("nonsense\x03");
+  CHECK_THAT(terminal.wait_for("^C"), Contains("^C"));
+  terminal.type("remove A\n");
+  CHECK_THAT(terminal.wait_for("removed"), Contains("removed") && !Contains("unknown command"));
+  terminal.wait_for("dowel> ");
+  terminal.type("\x04");
+  terminal.wait_for("never said");
+  CHECK(terminal.exit_status() == 0);
+}
