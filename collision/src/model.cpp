@@ -104,6 +104,14 @@ Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTria
   return x - middle;
 }
 
+/// How far the exact face can stand off the inside of a facet along x, y and z: a cylinder does so
+/// across its axis only.
+Eigen::Vector3d inner_reach(const Face& face, double slack_mm) {
+  const auto* cylinder = std::get_if<CylinderSurface>(&face.surface);
+  if (cylinder == nullptr) return Eigen::Vector3d::Constant(slack_mm);
+  return slack_mm * (1.0 - cylinder->axis.array().square()).max(0.0).sqrt().matrix();
+}
+
 bool overlap(const BvhNode& node, const Aabb& box) {
   return (node.min.array() <= box.max.array()).all() && (box.min.array() <= node.max.array()).all();
 }
@@ -114,20 +122,21 @@ CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
                                std::span<const std::uint32_t> hole_faces)
     : solid_(std::move(solid)) {
   if (const auto defect = find_defect(*solid_)) throw Error(ErrorCode::FileMalformed, *defect);
-  build_triangles(hole_faces);
-  build_tree();
+  build_tree(build_triangles(hole_faces));
   find_overhangs();
   find_inner_points();
   find_main_planes();
   profiles_ = find_axis_profiles(*this);
 }
 
-void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) {
+std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
+    std::span<const std::uint32_t> hole_faces) {
   const FacetedSolid& solid = *solid_;
   const auto neighbours = triangle_neighbours(solid);
   std::vector<bool> is_hole(solid.faces.size(), false);
   for (const std::uint32_t face : hole_faces) is_hole.at(face) = true;
 
+  std::vector<Eigen::Vector3d> reaches(solid.triangles.size());
   triangles_.resize(solid.triangles.size());
   for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
     ModelTriangle& t = triangles_[i];
@@ -144,15 +153,17 @@ void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) 
     }
     t.slack_mm = is_exact(face) && !is_plane(face.surface) ? face.facet_error_mm : 0.0;
     const bool is_flat = is_plane(face.surface);
+    reaches[i] = inner_reach(face, t.slack_mm);
     if (!is_exact(face)) max_unknown_mm_ = std::max(max_unknown_mm_, face.facet_error_mm);
     for (std::size_t edge = 0; edge < 3; ++edge) {
       const std::uint32_t beyond = neighbours[i][edge];
       t.neighbours[edge] = solid.face_of[beyond];
       t.edges[edge] = edge_shape(solid, i, beyond, t.normal, edge);
       if (t.edges[edge] == EdgeShape::Convex || t.edges[edge] == EdgeShape::Concave) {
-        const double rim_error_mm =
-            rim_offset(face, solid.faces[t.neighbours[edge]], t, edge).norm();
-        t.slack_mm = std::max(t.slack_mm, kRimAllowance * rim_error_mm);
+        const Eigen::Vector3d offset =
+            kRimAllowance * rim_offset(face, solid.faces[t.neighbours[edge]], t, edge);
+        t.slack_mm = std::max(t.slack_mm, offset.norm());
+        reaches[i] = reaches[i].cwiseMax(offset.cwiseAbs());
       }
     }
     t.normal_slack_mm = is_flat ? 0.0 : t.slack_mm;
@@ -173,9 +184,10 @@ void CollisionModel::build_triangles(std::span<const std::uint32_t> hole_faces) 
     }
   }
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) component_of_[t] = root(t);
+  return reaches;
 }
 
-void CollisionModel::build_tree() {
+void CollisionModel::build_tree(const std::vector<Eigen::Vector3d>& reaches) {
   struct Work {
     std::uint32_t node;
     std::uint32_t begin;
@@ -189,13 +201,8 @@ void CollisionModel::build_tree() {
   for (std::uint32_t t = 0; t < count; ++t) {
     for (const Eigen::Vector3d& corner : triangles_[t].corners) boxes[t].extend(corner);
     centers[t] = boxes[t].center();
-    const ModelTriangle& triangle = triangles_[t];
-    const Eigen::Array3d across = (1.0 - triangle.normal.array().square()).max(0.0).sqrt();
-    const Eigen::Vector3d reach = triangle.normal_slack_mm > 0.0
-                                      ? Eigen::Vector3d::Constant(triangle.slack_mm)
-                                      : Eigen::Vector3d((triangle.slack_mm * across).matrix());
-    boxes[t].min -= reach;
-    boxes[t].max += reach;
+    boxes[t].min -= reaches[t];
+    boxes[t].max += reaches[t];
   }
   nodes_.clear();
   nodes_.reserve(2 * count / kTrianglesPerLeaf + 1);

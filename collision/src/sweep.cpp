@@ -250,6 +250,17 @@ class CollisionScene::Impl::PairSweep {
         free_time_ = middle;
       }
     }
+    // At the edge a witness may be found from one start and not from another: the free pose has to
+    // be free for who asks there afresh.
+    for (double back_mm = kImpactAccuracy * options_.tolerance_mm; free_time_ > 0.0; back_mm *= 2) {
+      PairMemory nothing;
+      const PairVerdict there =
+          scene_.judge_bodies(moving_, motion_.at(free_time_), with_, options_, nothing);
+      if (there.verdict != Verdict::Interference) break;
+      hit_time_ = free_time_;
+      verdict_ = there;
+      free_time_ = std::max(0.0, free_time_ - back_mm / motion_.speed_mm());
+    }
   }
 
   Impl& scene_;

@@ -65,26 +65,56 @@ class Search {
   /// not leave room enough.
   bool settle(Eigen::Vector3d& p) const {
     for (int step = 0; step < kNewtonSteps; ++step) {
-      Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxConstraints, 3> slopes(
-          static_cast<Eigen::Index>(count_), 3);
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConstraints, 1> misses(
-          static_cast<Eigen::Index>(count_));
+      std::array<Eigen::Vector3d, kMaxConstraints> slopes;
+      std::array<double, kMaxConstraints> misses{};
+      double worst = 0.0;
       for (std::size_t i = 0; i < count_; ++i) {
         const DepthAndSlope d = depth_behind(constraints_[i], p);
-        slopes.row(static_cast<Eigen::Index>(i)) = d.inward_B.transpose();
-        misses[static_cast<Eigen::Index>(i)] = depth_mm_ - d.depth_mm;
+        slopes[i] = d.inward_B;
+        misses[i] = depth_mm_ - d.depth_mm;
+        worst = std::max(worst, misses[i]);
       }
-      if (misses.cwiseAbs().maxCoeff() <= 0.1 * kDepthSlack * std::abs(depth_mm_)) break;
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConstraints, kMaxConstraints>
-          normal = slopes * slopes.transpose();
-      normal.diagonal().array() += kRegularisation;
-      p += slopes.transpose() * normal.partialPivLu().solve(misses).eval();
+      if (worst <= 0.1 * kDepthSlack * std::abs(depth_mm_)) break;
+      p += shortest_step(slopes, misses);
       if (!p.allFinite()) return false;
     }
     for (std::size_t i = 0; i < count_; ++i) {
       if (depth_behind(constraints_[i], p).depth_mm < enough_mm()) return false;
     }
     return true;
+  }
+
+  /// The shortest step that makes up for what is missed, to first order, and leaves no other
+  /// constraint short: those that it would are met exactly, too.
+  Eigen::Vector3d shortest_step(const std::array<Eigen::Vector3d, kMaxConstraints>& slopes,
+                                const std::array<double, kMaxConstraints>& misses) const {
+    std::array<bool, kMaxConstraints> is_met{};
+    for (std::size_t i = 0; i < count_; ++i) is_met[i] = misses[i] > 0.0;
+    Eigen::Vector3d step = Eigen::Vector3d::Zero();
+    for (std::size_t round = 0; round < count_; ++round) {
+      Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxConstraints, 3> rows(0, 3);
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConstraints, 1> wanted(0);
+      const auto active = std::count(is_met.begin(), is_met.end(), true);
+      rows.resize(active, 3);
+      wanted.resize(active);
+      for (std::size_t i = 0, row = 0; i < count_; ++i) {
+        if (!is_met[i]) continue;
+        rows.row(static_cast<Eigen::Index>(row)) = slopes[i].transpose();
+        wanted[static_cast<Eigen::Index>(row++)] = misses[i];
+      }
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConstraints, kMaxConstraints>
+          normal = rows * rows.transpose();
+      normal.diagonal().array() += kRegularisation;
+      step = rows.transpose() * normal.partialPivLu().solve(wanted).eval();
+      bool is_short = false;
+      for (std::size_t i = 0; i < count_; ++i) {
+        if (is_met[i] || slopes[i].dot(step) >= misses[i]) continue;
+        is_met[i] = true;
+        is_short = true;
+      }
+      if (!is_short) break;
+    }
+    return step;
   }
 
   struct Reading {

@@ -1,11 +1,10 @@
 #include <catch2/catch.hpp>
 
-#include "dowel/collision/scene.h"
+#include "collision_element.h"
 #include "random_geometry.h"
 #include "solids.h"
 
 using dowel::BodyId;
-using dowel::CollisionElement;
 using dowel::CollisionScene;
 using dowel::FacetedSolid;
 using dowel::Pose;
@@ -15,13 +14,7 @@ namespace testing = dowel::testing;
 
 namespace {
 
-std::shared_ptr<const CollisionElement> element_of(FacetedSolid solid) {
-  const dowel::Aabb box = dowel::bounds(solid.vertices).padded(0.3);
-  auto shared = std::make_shared<const FacetedSolid>(std::move(solid));
-  return std::make_shared<const CollisionElement>(
-      dowel::Obb{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.size()},
-      [shared] { return shared; });
-}
+using testing::collision_element;
 
 SweepResult sweep(CollisionScene& scene, BodyId body, const Pose& from, const Pose& to) {
   const std::array<BodyId, 1> moving{body};
@@ -33,9 +26,9 @@ SweepResult sweep(CollisionScene& scene, BodyId body, const Pose& from, const Po
 
 TEST_CASE("a fast move does not jump through a thin plate, and stops where it meets it") {
   CollisionScene scene;
-  scene.add(element_of(testing::box({100, 100, 0.1})), Pose());
-  const BodyId pin =
-      scene.add(element_of(testing::cylinder(6, 20, 24)), Pose::from_translation({0, 0, 500}));
+  scene.add(collision_element(testing::box({100, 100, 0.1})), Pose());
+  const BodyId pin = scene.add(collision_element(testing::cylinder(6, 20, 24)),
+                               Pose::from_translation({0, 0, 500}));
   const auto result =
       sweep(scene, pin, Pose::from_translation({0, 0, 500}), Pose::from_translation({0, 0, -500}));
   CHECK(result.verdict == Verdict::Interference);
@@ -47,8 +40,8 @@ TEST_CASE("a fast move does not jump through a thin plate, and stops where it me
 
 TEST_CASE("a motion that starts in contact slides along and lifts off") {
   CollisionScene scene;
-  scene.add(element_of(testing::box({60, 60, 20}, {0, 0, -10})), Pose());
-  const BodyId block = scene.add(element_of(testing::box({10, 10, 10}, {0, 0, 5})), Pose());
+  scene.add(collision_element(testing::box({60, 60, 20}, {0, 0, -10})), Pose());
+  const BodyId block = scene.add(collision_element(testing::box({10, 10, 10}, {0, 0, 5})), Pose());
   const auto slide = sweep(scene, block, Pose(), Pose::from_translation({2, 0, 0}));
   CHECK(slide.verdict == Verdict::Contact);
   CHECK(slide.time_of_impact == 1.0);
@@ -61,8 +54,8 @@ TEST_CASE("a motion that starts in contact slides along and lifts off") {
 
 TEST_CASE("a turn meets what stands in its way") {
   CollisionScene scene;
-  scene.add(element_of(testing::box({10, 10, 10})), Pose::from_translation({0, 40, 0}));
-  const BodyId bar = scene.add(element_of(testing::box({100, 4, 4})), Pose());
+  scene.add(collision_element(testing::box({10, 10, 10})), Pose::from_translation({0, 40, 0}));
+  const BodyId bar = scene.add(collision_element(testing::box({100, 4, 4})), Pose());
   const Pose quarter(
       Eigen::Quaterniond(Eigen::AngleAxisd(1.5707963267948966, Eigen::Vector3d::UnitZ())),
       {0, 0, 0});
@@ -81,10 +74,10 @@ TEST_CASE("of several obstacles the first one met is told", "[property]") {
     double nearest = 1e9;
     for (int k = 0; k < 5; ++k) {
       const double x = random.uniform(20, 300);
-      scene.add(element_of(testing::box({4, 50, 50})), Pose::from_translation({x, 0, 0}));
+      scene.add(collision_element(testing::box({4, 50, 50})), Pose::from_translation({x, 0, 0}));
       nearest = std::min(nearest, x - 2 - 5);
     }
-    const BodyId block = scene.add(element_of(testing::box({10, 10, 10})), Pose());
+    const BodyId block = scene.add(collision_element(testing::box({10, 10, 10})), Pose());
     const auto result = sweep(scene, block, Pose(), Pose::from_translation({400, 0, 0}));
     CHECK(result.verdict == Verdict::Interference);
     CHECK(400 * result.time_of_impact == Approx(nearest).margin(0.02));
@@ -93,11 +86,106 @@ TEST_CASE("of several obstacles the first one met is told", "[property]") {
 
 TEST_CASE("a motion of no length is a check where the body stands") {
   CollisionScene scene;
-  scene.add(element_of(testing::box({10, 10, 10})), Pose());
-  const BodyId block = scene.add(element_of(testing::box({10, 10, 10})), Pose());
+  scene.add(collision_element(testing::box({10, 10, 10})), Pose());
+  const BodyId block = scene.add(collision_element(testing::box({10, 10, 10})), Pose());
   const auto inside = sweep(scene, block, Pose(), Pose());
   CHECK(inside.verdict == Verdict::Interference);
   CHECK(inside.time_of_impact == 0.0);
   const Pose away = Pose::from_translation({0, 0, 10});
   CHECK(sweep(scene, block, away, away).verdict == Verdict::Contact);
+}
+
+TEST_CASE("a long slide in contact takes few tests, whatever its length") {
+  CollisionScene scene;
+  scene.add(collision_element(
+                testing::plate_with_holes({400, 200, 20}, testing::hole_grid(9, 4, 40, 6.0), 16)),
+            Pose());
+  const BodyId riser = scene.add(collision_element(testing::plate_with_holes(
+                                     {60, 60, 30}, testing::hole_grid(1, 1, 40, 6.75), 16)),
+                                 Pose::from_translation({-150, 0, 20}));
+  const Pose from = scene.pose(riser);
+  const auto slide = sweep(scene, riser, from, Pose::from_translation({150, 10, 20}));
+  CHECK(slide.verdict == Verdict::Contact);
+  CHECK(slide.time_of_impact == 1.0);
+  CHECK(scene.counters().triangle_tests < 2000);
+  scene.reset_counters();
+  const Pose turned = Pose::about_axis({-150, 0, 0}, Eigen::Vector3d::UnitZ(), 1.5) * from;
+  CHECK(sweep(scene, riser, from, turned).time_of_impact == 1.0);
+  CHECK(scene.counters().triangle_tests < 2000);
+  // A pin let down its bore, turning: by the cylinders alone.
+  scene.reset_counters();
+  const BodyId pin =
+      scene.add(collision_element(testing::stepped_pin({{5.99, 20}, {9, 8}}, 16)), Pose());
+  scene.remove(riser);
+  const Pose above = Pose::from_translation({-160, -60, 40});
+  const Pose seated(Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ())),
+                    {-160, -60, 0});
+  const auto insert = sweep(scene, pin, above, seated);
+  CHECK(insert.verdict == Verdict::Contact);
+  CHECK(insert.time_of_impact == 1.0);
+  CHECK(scene.counters().triangle_tests < 2000);
+}
+
+TEST_CASE("no pose before the impact interferes, and the one at it does", "[property]") {
+#ifdef DOWEL_SANITIZED
+  constexpr int kMotions = 20;
+#else
+  constexpr int kMotions = 600;
+#endif
+  constexpr int kSamples = 60;
+  testing::RandomGeometry random(51);
+  CollisionScene scene;
+  scene.add(collision_element(testing::plate_with_holes({120, 80, 20}, {{-40, 0, 6.0}}, 12)),
+            Pose());
+  scene.add(collision_element(testing::box({20, 20, 20}, {0, 0, 10})),
+            Pose::from_translation({0, 25, 20}));
+  scene.add(collision_element(testing::cylinder(8, 25, 14)),
+            Pose::from_translation({-10, -25, 20}));
+  const std::array<BodyId, 2> bodies{
+      scene.add(collision_element(testing::stepped_pin({{5.99, 12}, {9.0, 6}}, 12)), Pose()),
+      scene.add(collision_element(testing::box({15, 15, 15}, {0, 0, 7.5})), Pose())};
+  int hits = 0;
+  int passes = 0;
+  for (int i = 0; i < kMotions; ++i) {
+    // Starts on the plate, over the bore or in the air; goes anywhere, turning or not.
+    const std::array<BodyId, 1> moving{bodies[random.index(2)]};
+    const bool over_bore = random.index(3) == 0;
+    const Pose from = Pose::from_translation({over_bore ? -40.0 : random.uniform(-60, 60),
+                                              over_bore ? 0.0 : random.uniform(-40, 40),
+                                              random.coin() ? 20.0 : random.uniform(20, 60)});
+    const Eigen::Vector3d way =
+        random.coin() ? Eigen::Vector3d(0, 0, random.uniform(-60, 20)) : random.point(60);
+    const Eigen::Quaterniond turn =
+        random.coin() ? Eigen::Quaterniond::Identity()
+                      : Eigen::Quaterniond(Eigen::AngleAxisd(
+                            random.uniform(0, 3),
+                            random.coin() ? Eigen::Vector3d::UnitZ() : random.direction()));
+    const Pose to(turn, from.translation() + way);
+    const auto verdict_at = [&](double time) {
+      const std::array<Pose, 1> poses{interpolate(from, to, time)};
+      return worst(scene.check_brute_force(moving, poses, {}));
+    };
+    const std::array<Pose, 1> X_UB{Pose()};
+    scene.move(moving[0], Pose::from_translation({500, 0, 0}));
+    scene.move(bodies[moving[0] == bodies[0] ? 1 : 0], Pose::from_translation({900, 0, 0}));
+    const SweepResult result = scene.sweep(moving, X_UB, from, to, {});
+    CAPTURE(i, from.translation().transpose(), way.transpose(), turn.coeffs().transpose(),
+            result.time_of_impact);
+    for (int k = 0; k < kSamples; ++k) {
+      const double time = (k + 0.5) / kSamples;
+      if (time < result.time_of_impact) REQUIRE(verdict_at(time) != Verdict::Interference);
+    }
+    if (result.verdict == Verdict::Interference) {
+      const std::array<Pose, 1> hit{interpolate(from, to, result.time_of_impact)};
+      REQUIRE(worst(scene.check(moving, hit, {})) == Verdict::Interference);
+      const std::array<Pose, 1> free{result.free_pose};
+      if (result.time_of_impact > 0.0) {
+        REQUIRE(worst(scene.check(moving, free, {})) != Verdict::Interference);
+      }
+    }
+    hits += result.verdict == Verdict::Interference ? 1 : 0;
+    passes += result.verdict == Verdict::Interference ? 0 : 1;
+  }
+  CHECK(hits > kMotions / 5);
+  CHECK(passes > kMotions / 10);
 }

@@ -126,8 +126,9 @@ class CollisionModel {
   std::size_t memory_bytes() const;
 
  private:
-  void build_triangles(std::span<const std::uint32_t> hole_faces);
-  void build_tree();
+  /// Returns how far the exact boundary can stand off each facet along x, y and z.
+  std::vector<Eigen::Vector3d> build_triangles(std::span<const std::uint32_t> hole_faces);
+  void build_tree(const std::vector<Eigen::Vector3d>& reaches);
   void set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const;
   void find_overhangs();
   void find_inner_points();
