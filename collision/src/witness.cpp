@@ -23,7 +23,7 @@ constexpr double kFineGrowth = 1.05;
 constexpr int kDeepenings = 8;
 
 constexpr std::size_t kMaxConstraints = 4;
-constexpr int kRounds = 8;
+constexpr int kRounds = 12;
 constexpr int kNewtonSteps = 6;
 
 enum class Side : std::uint8_t { A, B };
@@ -154,8 +154,17 @@ class Search {
                  constraints_[i].inward_B.dot(constraint.inward_B) > 1.0 - kDepthSlack);
       if (same && constraints_[i].side == constraint.side) return false;
     }
-    if (count_ == kMaxConstraints) return false;
-    constraints_[count_++] = constraint;
+    if (count_ < kMaxConstraints) {
+      constraints_[count_++] = constraint;
+      return true;
+    }
+    // A plane at a place of a rim stands for it only near there: the oldest one gives way.
+    const auto stale = std::ranges::find_if(constraints_, [&](const Constraint& known) {
+      return known.face == nullptr && known.side == constraint.side;
+    });
+    if (stale == constraints_.end()) return false;
+    std::move(stale + 1, constraints_.end(), stale);
+    constraints_.back() = constraint;
     return true;
   }
 
