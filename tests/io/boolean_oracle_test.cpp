@@ -420,5 +420,63 @@ TEST_CASE("the witness in a pin's chamfer is as deep as said", "[.known]") {
               stepped_pin(7.9260415341163073, 4, 10.969992020147018), kCoarse_mm, X_WA, X_AB, 0.01);
 }
 
+NamedShape pointed_cone(double radius_mm, double height_mm) {
+  return {named("cone", {radius_mm, 0.0, height_mm}),
+          library::turned({{0.0, 0.0}, {radius_mm, 0.0}, {0.0, height_mm}}),
+          {}};
+}
+
+// The rim of the cone's base reaches 0.001685 mm below the top of the plate, a sixth of the
+// tolerance. Interference is said, with a witness 0.14 mm outside one of the two.
+TEST_CASE("a pointed cone that stands on its rim is in contact", "[.known]") {
+  const Pose X_WA(Eigen::Quaterniond(-0.34272653492718202, 0.058839260961595523,
+                                     0.42589549898346013, 0.83527808996281583),
+                  {13.306212850878637, -10.325602474118131, -7.6341612252412645});
+  const Pose X_AB(Eigen::Quaterniond(-0.28494796539577416, -0.31674845919208611,
+                                     0.87149017669112783, 0.24285786490685241),
+                  {19.471070806809401, -7.341598360352112, 27.69117983582607});
+  check_known(holed_plate(13.82, 2.47), kCoarse_mm, pointed_cone(19.98, 8.1), kCoarse_mm, X_WA,
+              X_AB, 0.01);
+}
+
+TEST_CASE("a pointed cone is in contact with a wedge that its rim touches", "[.known]") {
+  const double half_mm = 31.15 * std::tan(0.5 * 10.2 * std::numbers::pi / 180.0);
+  const NamedShape wedge{"wedge 10.2 31.15",
+                         library::prism_y({{-half_mm, 0.0}, {0.0, 31.15}, {half_mm, 0.0}}, 30.0),
+                         {}};
+  const Pose X_WA(Eigen::Quaterniond(0.45280121991431971, 0.32391881325571015, -0.74257078193018589,
+                                     0.37233894704517362),
+                  {2.4735531166553066, -19.933109306794982, -14.744232214978943});
+  const Pose X_AB(Eigen::Quaterniond(0.81249841549571911, 0.37472158459205679, 0.21316272165576683,
+                                     -0.39241777859071275),
+                  {-17.107868825467708, 29.044306229047265, -19.107496180652966});
+  check_known(pointed_cone(15.08, 17.76), kCoarse_mm, wedge, kFine_mm, X_WA, X_AB, 0.001);
+}
+
+// The plate's lower edge at x = 40 is 0.002239 mm deep in the torus, and a ball of 0.0019 mm fits
+// into both: 1.9 times the tolerance. Contact is said.
+TEST_CASE("a torus that an edge cuts interferes", "[.known]") {
+  const NamedShape torus{"torus 29.53 2.93", BRepPrimAPI_MakeTorus(29.53, 2.93).Solid(), {}};
+  const Pose X_WA(Eigen::Quaterniond(0.64274881662853678, 0.60797805002584149,
+                                     -0.060997039063694587, 0.46207792701540434),
+                  {308.24537808704565, 322.19952845372757, -425.9167388914758});
+  const Pose X_AB(Eigen::Quaterniond(0.23251601302011699, 0.61370543927799714, -0.75380891317075382,
+                                     -0.032772853311183396),
+                  {67.232305408170134, 29.405897204215538, -15.533653045002673});
+  check_known(tee_slot_plate(15.21, 33.36), kCoarse_mm, torus, kFine_mm, X_WA, X_AB, 0.001);
+}
+
+// Contact is right, but the witness is 0.009 mm off where 2e-15 is said.
+TEST_CASE("the witness of two nuts in contact is on both", "[.known]") {
+  const Pose X_WA(Eigen::Quaterniond(-0.70760764210181848, 0.084050277924733352,
+                                     -0.58171802402286676, 0.39221310042732027),
+                  {-3.3839197303723925, -13.576229878981787, 3.372163357675138});
+  const Pose X_AB(Eigen::Quaterniond(0.097021673802954719, 0.26566126103081933,
+                                     -0.22614689017576364, 0.93213114595738034),
+                  {1.7331379767119939, -7.6431769806595877, -16.889698131414487});
+  check_known(hex_nut(13.99, 11.57, 8.69), kCoarse_mm, hex_nut(24.72, 11.92, 6.69), kFine_mm, X_WA,
+              X_AB, 0.01);
+}
+
 }  // namespace
 }  // namespace dowel::testing
