@@ -63,8 +63,8 @@ bool is_over_chord(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d&
   return along >= 0.0 && along <= chord.squaredNorm();
 }
 
-/// Whether the foot `c` on the plane of a planar facet lies between one of its chords and the arc
-/// over it, where facets fall short of the rim of a disc.
+/// Whether the foot `c` beside a facet lies between one of its chords and the arc over it, where
+/// facets fall short of the rim of a disc, or of the wide end of a cone.
 bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
                      const Eigen::Vector3d& c) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -90,6 +90,12 @@ bool overhangs_rim(const CollisionModel& model, std::uint32_t index, const Eigen
 
 bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& c) {
   return beyond_edge(t, 0, c) <= 0.0 && beyond_edge(t, 1, c) <= 0.0 && beyond_edge(t, 2, c) <= 0.0;
+}
+
+/// Whether the foot `c` on a curved surface is on the facet's side of it and about its height.
+bool is_beside(const ModelTriangle& t, const Face& face, const Eigen::Vector3d& c) {
+  return outward_normal(face, c).dot(t.normal) > 0.2 &&
+         std::abs(t.normal.dot(c - t.corners[0])) <= kSheetSlacks * t.slack_mm + kInsideSlack;
 }
 
 /// Whether the foot `c` on a curved surface lies over the facet, seen along the surface's normal.
@@ -194,7 +200,9 @@ FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle
     return nearest_on_rim_of_patch(model, t, closest_on_triangle(t.corners, p), p);
   }
   const Eigen::Vector3d c = closest_point(face.surface, p);
-  if (foot_is_over(t, face, c)) return at(c, p, FacePoint::Place::Face);
+  if (foot_is_over(t, face, c) || (is_beside(t, face, c) && is_short_of_rim(model, t, c))) {
+    return at(c, p, FacePoint::Place::Face);
+  }
   const TrianglePoint q = closest_on_triangle(t.corners, p);
   if (q.region == 0) return at(closest_point(face.surface, q.point), p, FacePoint::Place::Face);
   return nearest_on_rim_of_patch(model, t, q, p);

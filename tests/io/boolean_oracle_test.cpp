@@ -350,7 +350,7 @@ void report(Tally& tally) {
 }
 
 TEST_CASE("verdicts are those of OpenCascade's Booleans", "[property]") {
-  RandomGeometry random(4);  // 1 and 3 meet the known faults below
+  RandomGeometry random(4);  // 1 meets the known faults below
   Tally tally;
   check_pairs(random, made_pool(random), kPairs * 3 / 4, tally);
   std::vector<library::Part> parts = library::rest_buttons();
@@ -410,7 +410,7 @@ TEST_CASE("a sphere that touches the rounded edge of a block is in contact", "[.
 }
 
 // Interference is right, but the witness is 0.00354 mm deep where 0.005 is said.
-TEST_CASE("the witness in a pin's chamfer is as deep as said", "[.known]") {
+TEST_CASE("the witness in a pin's chamfer is as deep as said", "[regression]") {
   const Pose X_WA(Eigen::Quaterniond(-0.46868909615976817, 0.86239920560695604,
                                      -0.046914375495619123, -0.18546477477215684),
                   {-12.465738901427834, 48.388480826207569, -45.144202778865207});
@@ -428,7 +428,7 @@ NamedShape pointed_cone(double radius_mm, double height_mm) {
 
 // The rim of the cone's base reaches 0.001685 mm below the top of the plate, a sixth of the
 // tolerance. Interference is said, with a witness 0.14 mm outside one of the two.
-TEST_CASE("a pointed cone that stands on its rim is in contact", "[.known]") {
+TEST_CASE("a pointed cone that stands on its rim is in contact", "[regression]") {
   const Pose X_WA(Eigen::Quaterniond(-0.34272653492718202, 0.058839260961595523,
                                      0.42589549898346013, 0.83527808996281583),
                   {13.306212850878637, -10.325602474118131, -7.6341612252412645});
@@ -439,7 +439,7 @@ TEST_CASE("a pointed cone that stands on its rim is in contact", "[.known]") {
               X_AB, 0.01);
 }
 
-TEST_CASE("a pointed cone is in contact with a wedge that its rim touches", "[.known]") {
+TEST_CASE("a pointed cone is in contact with a wedge that its rim touches", "[regression]") {
   const double half_mm = 31.15 * std::tan(0.5 * 10.2 * std::numbers::pi / 180.0);
   const NamedShape wedge{"wedge 10.2 31.15",
                          library::prism_y({{-half_mm, 0.0}, {0.0, 31.15}, {half_mm, 0.0}}, 30.0),
