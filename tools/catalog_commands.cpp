@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "commands.h"
 #include "dowel/catalog/catalog.h"
 #include "dowel/catalog/lint.h"

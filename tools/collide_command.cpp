@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "commands.h"
 #include "dowel/catalog/catalog.h"
 #include "dowel/catalog/recognition.h"

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <exception>
 
+#include <CLI/CLI.hpp>
+
 #include "commands.h"
 #include "dowel/kernel/error.h"
 

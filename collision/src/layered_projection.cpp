@@ -81,8 +81,18 @@ Stretches met_by(const std::vector<double>& cuts, double low, double high) {
 
 }  // namespace
 
+LayeredProjection::Extent::Extent(const Aabb& box) {
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    min[i] = static_cast<float>(box.min[i]);
+    max[i] = static_cast<float>(box.max[i]);
+    if (double{min[i]} > box.min[i]) min[i] = std::nextafter(min[i], -kEndless);
+    if (double{max[i]} < box.max[i]) max[i] = std::nextafter(max[i], kEndless);
+  }
+}
+
 template <class Reach, class Visit>
-void LayeredProjection::for_each_cell(const Aabb& box, const Reach& reach, const Visit& visit) {
+void LayeredProjection::for_each_cell(const Extent& box, const Reach& reach, const Visit& visit) {
   const Stretches layers = reach(z_cuts_, box.min.z(), box.max.z());
   for (std::size_t z = layers.first; z <= layers.last; ++z) {
     Layer& layer = layers_[z];
@@ -102,13 +112,13 @@ void LayeredProjection::insert(std::uint32_t id, const Aabb& box) {
     seen_in_.resize(id + 1, 0);
   }
   DOWEL_EXPECTS(boxes_[id].is_empty());
-  boxes_[id] = box;
+  boxes_[id] = Extent(box);
   omega_.extend(box);
   ++count_;
   if (layers_.empty() || 2 * count_ > 3 * count_at_rebuild_ + 2 * kBoxesPerStretch) {
     rebuild();
   } else {
-    for_each_cell(box, listed_in, [id](auto& cell) { cell.push_back(id); });
+    for_each_cell(boxes_[id], listed_in, [id](auto& cell) { cell.push_back(id); });
   }
 }
 
@@ -119,7 +129,7 @@ void LayeredProjection::remove(std::uint32_t id) {
     *entry = cell.back();
     cell.pop_back();
   });
-  boxes_[id] = Aabb{};
+  boxes_[id] = Extent();
   --count_;
   if (2 * count_ + 2 * kBoxesPerStretch < count_at_rebuild_) rebuild();
 }
@@ -132,7 +142,7 @@ void LayeredProjection::rebuild() {
     if (boxes_[id].is_empty()) continue;
     ids.push_back(id);
     heights.push_back({boxes_[id].min.z(), boxes_[id].max.z()});
-    omega_.extend(boxes_[id]);
+    omega_.extend(boxes_[id].box());
   }
   count_at_rebuild_ = count_;
   // As many layers as a cube of cells would have; each at least as tall as the middle box.
@@ -154,13 +164,13 @@ void LayeredProjection::rebuild() {
     std::vector<double> x_sizes;
     std::vector<double> y_sizes;
     for (const std::uint32_t id : ids) {
-      const Aabb& box = boxes_[id];
+      const Extent& box = boxes_[id];
       const Stretches layers = listed_in(z_cuts_, box.min.z(), box.max.z());
       if (layers.first > z || layers.last < z) continue;
       x_intervals.push_back({box.min.x(), box.max.x()});
       y_intervals.push_back({box.min.y(), box.max.y()});
-      x_sizes.push_back(box.size().x());
-      y_sizes.push_back(box.size().y());
+      x_sizes.push_back(box.max.x() - box.min.x());
+      y_sizes.push_back(box.max.y() - box.min.y());
     }
     const auto stretches =
         static_cast<std::size_t>(std::sqrt(static_cast<double>(x_intervals.size()) /
@@ -183,11 +193,12 @@ void LayeredProjection::query(const Aabb& box, std::vector<std::uint32_t>& found
     std::ranges::fill(seen_in_, 0);
     query_number_ = 1;
   }
-  for_each_cell(box, met_by, [&](const auto& cell) {
+  const Extent wanted(box);
+  for_each_cell(wanted, met_by, [&](const auto& cell) {
     for (const std::uint32_t id : cell) {
       if (seen_in_[id] == query_number_) continue;
       seen_in_[id] = query_number_;
-      if (boxes_[id].overlaps(box)) found.push_back(id);
+      if (boxes_[id].overlaps(wanted)) found.push_back(id);
     }
   });
   std::ranges::sort(found);
@@ -196,8 +207,9 @@ void LayeredProjection::query(const Aabb& box, std::vector<std::uint32_t>& found
 void LayeredProjection::query_brute_force(const Aabb& box,
                                           std::vector<std::uint32_t>& found) const {
   found.clear();
+  const Extent wanted(box);
   for (std::uint32_t id = 0; id < boxes_.size(); ++id) {
-    if (!boxes_[id].is_empty() && boxes_[id].overlaps(box)) found.push_back(id);
+    if (!boxes_[id].is_empty() && boxes_[id].overlaps(wanted)) found.push_back(id);
   }
 }
 
@@ -208,7 +220,8 @@ std::size_t LayeredProjection::cell_count() const {
 }
 
 std::size_t LayeredProjection::memory_bytes() const {
-  std::size_t bytes = boxes_.capacity() * sizeof(Aabb) + seen_in_.capacity() * sizeof(seen_in_[0]) +
+  std::size_t bytes = boxes_.capacity() * sizeof(Extent) +
+                      seen_in_.capacity() * sizeof(seen_in_[0]) +
                       layers_.capacity() * sizeof(Layer);
   for (const Layer& layer : layers_) {
     bytes += (layer.x_cuts.capacity() + layer.y_cuts.capacity()) * sizeof(double) +

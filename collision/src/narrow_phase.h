@@ -63,10 +63,6 @@ struct PairMemory {
   Eigen::Vector3d ball_B = Eigen::Vector3d::Zero();
   double ball_depth_a_mm = 0.0;
   double ball_depth_b_mm = 0.0;
-
-  /// A point deep in A is known to be this far outside B at some pose, and one of B outside A.
-  Eigen::Vector3d outside_B = Eigen::Vector3d::Zero();
-  double outside_mm = 0.0;
 };
 
 /// The verdict, with witness in the frame of B.

@@ -7,6 +7,7 @@
 
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/layered_projection.h"
+#include "dowel/collision/silhouette.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "narrow_phase.h"
@@ -79,9 +80,9 @@ BodyId CollisionScene::add(std::shared_ptr<const CollisionElement> element, cons
     id = impl_->free_ids.back();
     impl_->free_ids.pop_back();
   }
-  const Obb obb_W = transformed(X_WB, element->obb());
-  impl_->bodies[id.value] = {std::move(element), X_WB, obb_W, false};
-  impl_->projection.insert(id.value, bounds(obb_W));
+  Impl::Body& body = impl_->bodies[id.value];
+  body = {std::move(element), X_WB, false};
+  impl_->projection.insert(id.value, bounds(body.obb_W()));
   impl_->movers.clear();
   return id;
 }
@@ -99,9 +100,8 @@ void CollisionScene::remove(BodyId id) {
 void CollisionScene::move(BodyId id, const Pose& X_WB) {
   Impl::Body& body = impl_->body(id);
   body.X_WB = X_WB;
-  body.obb_W = transformed(X_WB, body.element->obb());
   impl_->projection.remove(id.value);
-  impl_->projection.insert(id.value, bounds(body.obb_W));
+  impl_->projection.insert(id.value, bounds(body.obb_W()));
   impl_->forget_all_but(id);
 }
 
@@ -185,21 +185,25 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
 
 void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   const Obb& obb_B = body(mover.id).element->obb();
+  const Obb obb_W = transformed(mover.X_WB, obb_B);
   const double room_mm =
       std::min(kStepsOfRoom * step_mm, kSizesOfRoom * obb_B.half_extents_mm.norm());
-  projection.query(bounds(transformed(mover.X_WB, obb_B)).padded(mover.tolerance_mm + room_mm),
-                   found);
+  const double margin_mm = mover.tolerance_mm + room_mm;
+  const Silhouette outline = silhouette(obb_W);
+  projection.query(bounds(obb_W).padded(margin_mm), found);
   std::swap(mover.candidates, old_candidates);
   mover.candidates.clear();
   auto old = old_candidates.begin();
   for (const std::uint32_t other : found) {
     if (other == mover.id.value) continue;
+    const Obb other_W = bodies[other].obb_W();
+    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
     while (old != old_candidates.end() && old->id.value < other) ++old;
     if (old != old_candidates.end() && old->id.value == other) {
       mover.candidates.push_back(*old);
       mover.candidates.back().clear_until -= mover.way_mm;
     } else {
-      mover.candidates.push_back({BodyId{other}, -1, 0.0, {}});
+      mover.candidates.push_back({BodyId{other}, other_W, -1, 0.0, {}});
     }
   }
   mover.way_mm = 0.0;
@@ -222,7 +226,8 @@ bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options
       continue;
     }
     ++counters.box_tests;
-    const BoxSeparation boxes = separate(obb_W, other.obb_W, options.tolerance_mm, candidate.plane);
+    const BoxSeparation boxes =
+        separate(obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
     candidate.plane = static_cast<std::int8_t>(boxes.plane);
     double gap_mm = boxes.gap_mm;
     if (boxes.plane < 0) {
@@ -300,13 +305,12 @@ std::vector<BodyVerdict> CollisionScene::check_all(const QueryOptions& options) 
   for (std::uint32_t i = 0; i < impl_->bodies.size(); ++i) {
     const Impl::Body& body = impl_->bodies[i];
     if (body.element == nullptr) continue;
-    impl_->projection.query(bounds(body.obb_W).padded(options.tolerance_mm), found);
+    const Obb obb_W = body.obb_W();
+    impl_->projection.query(bounds(obb_W).padded(options.tolerance_mm), found);
     for (const std::uint32_t other : found) {
       if (other <= i) continue;
       ++impl_->counters.box_tests;
-      if (separate(body.obb_W, impl_->bodies[other].obb_W, options.tolerance_mm).plane >= 0) {
-        continue;
-      }
+      if (separate(obb_W, impl_->bodies[other].obb_W(), options.tolerance_mm).plane >= 0) continue;
       PairMemory memory;
       const PairVerdict verdict =
           impl_->judge_bodies(BodyId{i}, body.X_WB, BodyId{other}, options, memory);
@@ -326,8 +330,8 @@ void CollisionScene::reset_counters() {
 }
 
 std::size_t CollisionScene::memory_bytes() const {
-  std::size_t bytes = sizeof(Impl) + impl_->bodies.capacity() * sizeof(Impl::Body) +
-                      impl_->projection.memory_bytes();
+  std::size_t bytes =
+      sizeof(Impl) + impl_->bodies.size() * sizeof(Impl::Body) + impl_->projection.memory_bytes();
   for (const Impl::Mover& mover : impl_->movers) {
     bytes += sizeof(mover) + mover.candidates.capacity() * sizeof(Impl::Candidate);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <utility>
 #include <vector>
@@ -16,13 +17,15 @@ struct CollisionScene::Impl {
   struct Body {
     std::shared_ptr<const CollisionElement> element;  // null: a free id
     Pose X_WB;
-    Obb obb_W;
     bool is_moving = false;  // during a query
+
+    Obb obb_W() const { return transformed(X_WB, element->obb()); }
   };
 
   /// A placed body that a mover may meet, and what is known of the two.
   struct Candidate {
     BodyId id;
+    Obb obb_W;
     std::int8_t plane = -1;    // that kept their boxes apart last
     double clear_until = 0.0;  // the two are clear while the mover's way is below this
     PairMemory memory;
@@ -98,7 +101,7 @@ struct CollisionScene::Impl {
   /// Reliefs of the pair in the frame of b; valid until the next call.
   std::span<const ThreadRelief> reliefs_in(BodyId a, BodyId b, const Pose& X_BA);
 
-  std::vector<Body> bodies;
+  std::deque<Body> bodies;  // grows without room to spare
   std::vector<BodyId> free_ids;
   LayeredProjection projection;
   std::map<std::pair<BodyId, BodyId>, std::vector<ThreadRelief>> reliefs;  // in the first's frame

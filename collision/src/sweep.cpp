@@ -108,6 +108,7 @@ class CollisionScene::Impl::PairSweep {
         options_(options),
         a_(*scene.bodies[moving.value].element),
         b_(*scene.bodies[with.value].element),
+        obb_b_W_(scene.bodies[with.value].obb_W()),
         X_BW_(scene.bodies[with.value].X_WB.inverse()) {}
 
   /// Follows the motion up to `until`; true where it meets an interference before.
@@ -153,8 +154,7 @@ class CollisionScene::Impl::PairSweep {
   double box_gap_mm(double time) {
     ++scene_.counters.box_tests;
     const BoxSeparation boxes =
-        separate(transformed(motion_.at(time), a_.obb()), scene_.bodies[with_.value].obb_W,
-                 options_.tolerance_mm, plane_);
+        separate(transformed(motion_.at(time), a_.obb()), obb_b_W_, options_.tolerance_mm, plane_);
     plane_ = boxes.plane;
     return boxes.plane < 0 ? 0.0 : boxes.gap_mm;
   }
@@ -194,12 +194,11 @@ class CollisionScene::Impl::PairSweep {
   KeptOff planes_of_mover(double time) const {
     if (motion_.is_turn()) return {};
     const Pose X_WA = motion_.at(time);
-    const Obb& obb_W = scene_.bodies[with_.value].obb_W;
     return {a_.model(), options_.tolerance_mm, [&](const PlaneSurface& plane) {
               const Eigen::Vector3d normal_W = X_WA.rotation() * plane.normal;
               const double reach =
-                  (obb_W.axes.transpose() * normal_W).cwiseAbs().dot(obb_W.half_extents_mm);
-              const double now = normal_W.dot(obb_W.center - X_WA * plane.origin) - reach;
+                  (obb_b_W_.axes.transpose() * normal_W).cwiseAbs().dot(obb_b_W_.half_extents_mm);
+              const double now = normal_W.dot(obb_b_W_.center - X_WA * plane.origin) - reach;
               return now - std::max(0.0, (1.0 - time) * normal_W.dot(motion_.way_W()));
             }};
   }
@@ -270,6 +269,7 @@ class CollisionScene::Impl::PairSweep {
   const QueryOptions& options_;
   const CollisionElement& a_;
   const CollisionElement& b_;
+  Obb obb_b_W_;
   Pose X_BW_;
   PairMemory memory_;
   int plane_ = -1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -25,6 +26,11 @@ constexpr int kDeepenings = 8;
 constexpr std::size_t kMaxConstraints = 4;
 constexpr int kRounds = 12;
 constexpr int kNewtonSteps = 6;
+
+/// More steps are made for as long as each leaves no more than this of what is missed: two faces
+/// that touch at a point are a double root, to which Newton's steps go by halves.
+constexpr double kSteadyGain = 0.5;
+constexpr int kMaxNewtonSteps = 40;
 
 enum class Side : std::uint8_t { A, B };
 
@@ -64,7 +70,8 @@ class Search {
   /// Moves `p` to `depth_mm` behind all constraints, as nearly as they allow. False where they do
   /// not leave room enough.
   bool settle(Eigen::Vector3d& p) const {
-    for (int step = 0; step < kNewtonSteps; ++step) {
+    double previous = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMaxNewtonSteps; ++step) {
       std::array<Eigen::Vector3d, kMaxConstraints> slopes;
       std::array<double, kMaxConstraints> misses{};
       double worst = 0.0;
@@ -75,6 +82,8 @@ class Search {
         worst = std::max(worst, misses[i]);
       }
       if (worst <= 0.1 * kDepthSlack * std::abs(depth_mm_)) break;
+      if (step >= kNewtonSteps && worst > kSteadyGain * previous) break;
+      previous = worst;
       p += shortest_step(slopes, misses);
       if (!p.allFinite()) return false;
     }

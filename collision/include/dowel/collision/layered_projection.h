@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <limits>
 #include <vector>
 
 #include "dowel/kernel/box.h"
@@ -32,7 +32,8 @@ class LayeredProjection {
   void remove(std::uint32_t id);
 
   /// Ids whose boxes overlap `box` (closed: touching counts), sorted, into `found` (cleared first).
-  /// No allocation once `found` and the model have seen their largest query.
+  /// Boxes are kept in single precision, rounded outwards: one that misses by no more than that may
+  /// be among them. No allocation once `found` and the model have seen their largest query.
   void query(const Aabb& box, std::vector<std::uint32_t>& found);
 
   /// The same answer by looking at every box. Reference for tests.
@@ -45,6 +46,19 @@ class LayeredProjection {
   const Aabb& omega() const noexcept { return omega_; }
 
  private:
+  /// A box in half the memory; contains the one that it was made from.
+  struct Extent {
+    Eigen::Array3f min = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
+    Eigen::Array3f max = Eigen::Array3f::Constant(-std::numeric_limits<float>::infinity());
+
+    Extent() = default;
+    explicit Extent(const Aabb& box);
+    Aabb box() const { return {min.cast<double>(), max.cast<double>()}; }
+    bool is_empty() const { return !(min <= max).all(); }
+    bool overlaps(const Extent& other) const {
+      return (min <= other.max).all() && (other.min <= max).all();
+    }
+  };
   struct Layer {
     std::vector<double> x_cuts;  ///< ascending; n cuts make n + 1 columns
     std::vector<double> y_cuts;
@@ -52,12 +66,12 @@ class LayeredProjection {
   };
 
   template <class Reach, class Visit>
-  void for_each_cell(const Aabb& box, const Reach& reach, const Visit& visit);
+  void for_each_cell(const Extent& box, const Reach& reach, const Visit& visit);
   void rebuild();
 
   std::vector<double> z_cuts_;  ///< ascending; n cuts make n + 1 layers
   std::vector<Layer> layers_;
-  std::vector<Aabb> boxes_;             ///< by id; empty where there is none
+  std::vector<Extent> boxes_;           ///< by id; empty where there is none
   std::vector<std::uint32_t> seen_in_;  ///< by id: last query that met it
   std::uint32_t query_number_ = 0;
   Aabb omega_;
