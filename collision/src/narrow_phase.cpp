@@ -22,9 +22,9 @@ constexpr double kSafety = 1.0e-6;
 /// Fractions of a crossing segment at which a witness is sought.
 constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
 
-/// How far a witness may lie from its start, in tolerances and in slacks.
+/// How far a witness may lie from its start, in tolerances; and, as the deepest place behind curved
+/// facets may be anywhere along them, the length of the shorter one more.
 constexpr double kReachTolerances = 64.0;
-constexpr double kReachSlacks = 16.0;
 
 /// Alternating projections between two exact faces before their gap is taken as it stands, and the
 /// share of the tolerance below which another one gains nothing.
@@ -188,6 +188,12 @@ std::optional<Eigen::Vector3d> middle_of_overlap(const Corners& a, const Corners
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
   return sum / static_cast<double>(count);
+}
+
+double longest_edge(const Corners& corners) {
+  return std::sqrt(std::max({(corners[1] - corners[0]).squaredNorm(),
+                             (corners[2] - corners[1]).squaredNorm(),
+                             (corners[0] - corners[2]).squaredNorm()}));
 }
 
 Corners shifted(const Corners& corners, const Eigen::Vector3d& by) {
@@ -465,7 +471,7 @@ class Judge {
     if (is_between_faces(i, j, closest.on_b)) return true;
     const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
     if (const auto place =
-            find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(slack))) {
+            find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
       touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
       return true;
     }
@@ -568,7 +574,7 @@ class Judge {
       return false;
     }
     note_method(a, b, slack);
-    const double reach = reach_mm(slack);
+    const double reach = reach_mm(a, b);
     const auto crossing =
         crossing_segment(shifted(a_B.corners_B, -erosion_mm_ * a_B.normal_B), a_B.normal_B,
                          shifted(b.corners, -erosion_mm_ * b.normal), b.normal);
@@ -589,8 +595,12 @@ class Judge {
   }
 
   /// How far a witness may lie from its start.
-  double reach_mm(double slack) const {
-    return kReachTolerances * options_.tolerance_mm + kReachSlacks * slack;
+  double reach_mm(const ModelTriangle& a, const ModelTriangle& b) const {
+    double length_mm = std::numeric_limits<double>::infinity();
+    if (a.slack_mm > 0.0) length_mm = longest_edge(a.corners);
+    if (b.slack_mm > 0.0) length_mm = std::min(length_mm, longest_edge(b.corners));
+    if (!std::isfinite(length_mm)) length_mm = 0.0;  // flat, with straight edges
+    return kReachTolerances * options_.tolerance_mm + length_mm;
   }
 
   void note_method(const ModelTriangle& a, const ModelTriangle& b, double slack) {

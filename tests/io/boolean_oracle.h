@@ -54,6 +54,12 @@ inline std::optional<Nearest> nearest(const TopoDS_Shape& a, const TopoDS_Shape&
                  to_eigen(extrema.PointOnShape2(1))};
 }
 
+/// Whether `point` lies in `solid` or within `slack_mm` of its boundary.
+inline bool is_on_or_in(const TopoDS_Shape& solid, const Eigen::Vector3d& point, double slack_mm) {
+  const BRepClass3d_SolidClassifier classifier(solid, to_pnt(point), slack_mm);
+  return classifier.State() == TopAbs_IN || classifier.State() == TopAbs_ON;
+}
+
 /// Depth of points: distance from the boundary, positive inside.
 class DepthOracle {
  public:

@@ -197,7 +197,10 @@ Ruling judge(const Pair& pair, const PairVerdict& said, const Vector3d& witness_
     const TopoDS_Shape vertex = BRepBuilderAPI_MakeVertex(to_pnt(witness_A)).Vertex();
     for (const TopoDS_Shape& shape : {a, b}) {
       const std::optional<Nearest> to_witness = nearest(vertex, shape);
-      if (to_witness && to_witness->distance_mm > said.gap_mm + slack_mm) {
+      const double limit_mm = said.gap_mm + slack_mm;
+      // At times only the edges of a face are found near a point that lies on it.
+      if (to_witness && to_witness->distance_mm > limit_mm &&
+          !is_on_or_in(shape, witness_A, limit_mm)) {
         figures << ", witness off by " << to_witness->distance_mm;
         result.fault = "the witness is further off than said";
       }
@@ -350,7 +353,7 @@ void report(Tally& tally) {
 }
 
 TEST_CASE("verdicts are those of OpenCascade's Booleans", "[property]") {
-  RandomGeometry random(4);  // 1 meets the known faults below
+  RandomGeometry random(1);
   Tally tally;
   check_pairs(random, made_pool(random), kPairs * 3 / 4, tally);
   std::vector<library::Part> parts = library::rest_buttons();
@@ -373,10 +376,10 @@ TEST_CASE("two thousand verdicts are those of OpenCascade's Booleans", "[.slow]"
 }
 
 /// Faults found by the tests above, at the tolerance and with the facets that show them.
-void check_known(NamedShape a, double fine_a_mm, NamedShape b, double fine_b_mm, const Pose& X_WA,
-                 const Pose& X_AB, double tolerance_mm) {
+void check_regression(NamedShape a, double fine_a_mm, NamedShape b, double fine_b_mm,
+                      const Pose& X_WA, const Pose& X_AB, double tolerance_mm) {
   const Pair pair{
-      "known", std::make_shared<const Solid>(std::move(a), std::initializer_list{fine_a_mm}),
+      "regression", std::make_shared<const Solid>(std::move(a), std::initializer_list{fine_a_mm}),
       std::make_shared<const Solid>(std::move(b), std::initializer_list{fine_b_mm}), X_AB};
   Tally tally;
   check_pair(pair, X_WA, {.tolerance_mm = tolerance_mm}, tally);
@@ -385,18 +388,19 @@ void check_known(NamedShape a, double fine_a_mm, NamedShape b, double fine_b_mm,
 }
 
 // The lowest place of the cylinder's rounding (torus 9.984, 2.496) is in the plane of the nut's top
-// face within 1e-14 mm, 10.78 mm from the axis, well inside that face. Clear is said, with gap 0.
-TEST_CASE("a rounded cylinder that leans on a nut is in contact", "[.known]") {
+// face within 1e-14 mm, 10.78 mm from the axis, well inside that face. Clear was said, with gap 0.
+TEST_CASE("a rounded cylinder that leans on a nut is in contact", "[regression]") {
   const NamedShape cylinder{
       "rounded cylinder 12.48 21.95", rounded(round_bar(12.48, 0.0, 21.95), 0.2 * 12.48), {}};
   const Pose X_AB(Eigen::Quaterniond(0.61471722496836234, -0.57640980170584288, 0.289744510378033,
                                      -0.45378694618776844),
                   {-1.9282419183233261, 8.7646828250860587, 21.960448705803159});
-  check_known(hex_nut(26.06, 10.04, 5.25), kCoarse_mm, cylinder, kCoarse_mm, Pose(), X_AB, 0.001);
+  check_regression(hex_nut(26.06, 10.04, 5.25), kCoarse_mm, cylinder, kCoarse_mm, Pose(), X_AB,
+                   0.001);
 }
 
-// The gap is 0.79 of the tolerance. Clear is said, with gap 0.
-TEST_CASE("a sphere that touches the rounded edge of a block is in contact", "[.known]") {
+// The gap is 0.79 of the tolerance. Clear was said, with gap 0.
+TEST_CASE("a sphere that touches the rounded edge of a block is in contact", "[regression]") {
   const NamedShape block{
       "rounded block 44.35 39.5 16.36 3.53", rounded(library::block(44.35, 39.5, 16.36), 3.53), {}};
   const NamedShape ball{"sphere 15.41", BRepPrimAPI_MakeSphere(15.41).Solid(), {}};
@@ -406,18 +410,19 @@ TEST_CASE("a sphere that touches the rounded edge of a block is in contact", "[.
   const Pose X_AB(Eigen::Quaterniond(0.13694754873113388, 0.12139008288576532, -0.88342178452387188,
                                      0.43136500472590322),
                   {28.845977850208232, -32.179122074764024, 4.0169425386663953});
-  check_known(block, kCoarse_mm, ball, kFine_mm, X_WA, X_AB, 0.001);
+  check_regression(block, kCoarse_mm, ball, kFine_mm, X_WA, X_AB, 0.001);
 }
 
-// Interference is right, but the witness is 0.00354 mm deep where 0.005 is said.
+// Interference is right, but the witness was 0.00354 mm deep where 0.005 was said.
 TEST_CASE("the witness in a pin's chamfer is as deep as said", "[regression]") {
   const Pose X_WA(Eigen::Quaterniond(-0.46868909615976817, 0.86239920560695604,
                                      -0.046914375495619123, -0.18546477477215684),
                   {-12.465738901427834, 48.388480826207569, -45.144202778865207});
   const Pose X_AB(Eigen::Quaterniond(-0.15113170527702591, 0, 0, 0.98851363554584226),
                   {-9.9944999999999986, 0, 17.383805639741873});
-  check_known(clamp_strap(66.63, 39.78, 17.4), kFine_mm,
-              stepped_pin(7.9260415341163073, 4, 10.969992020147018), kCoarse_mm, X_WA, X_AB, 0.01);
+  check_regression(clamp_strap(66.63, 39.78, 17.4), kFine_mm,
+                   stepped_pin(7.9260415341163073, 4, 10.969992020147018), kCoarse_mm, X_WA, X_AB,
+                   0.01);
 }
 
 NamedShape pointed_cone(double radius_mm, double height_mm) {
@@ -427,7 +432,7 @@ NamedShape pointed_cone(double radius_mm, double height_mm) {
 }
 
 // The rim of the cone's base reaches 0.001685 mm below the top of the plate, a sixth of the
-// tolerance. Interference is said, with a witness 0.14 mm outside one of the two.
+// tolerance. Interference was said, with a witness 0.14 mm outside one of the two.
 TEST_CASE("a pointed cone that stands on its rim is in contact", "[regression]") {
   const Pose X_WA(Eigen::Quaterniond(-0.34272653492718202, 0.058839260961595523,
                                      0.42589549898346013, 0.83527808996281583),
@@ -435,8 +440,8 @@ TEST_CASE("a pointed cone that stands on its rim is in contact", "[regression]")
   const Pose X_AB(Eigen::Quaterniond(-0.28494796539577416, -0.31674845919208611,
                                      0.87149017669112783, 0.24285786490685241),
                   {19.471070806809401, -7.341598360352112, 27.69117983582607});
-  check_known(holed_plate(13.82, 2.47), kCoarse_mm, pointed_cone(19.98, 8.1), kCoarse_mm, X_WA,
-              X_AB, 0.01);
+  check_regression(holed_plate(13.82, 2.47), kCoarse_mm, pointed_cone(19.98, 8.1), kCoarse_mm, X_WA,
+                   X_AB, 0.01);
 }
 
 TEST_CASE("a pointed cone is in contact with a wedge that its rim touches", "[regression]") {
@@ -450,12 +455,12 @@ TEST_CASE("a pointed cone is in contact with a wedge that its rim touches", "[re
   const Pose X_AB(Eigen::Quaterniond(0.81249841549571911, 0.37472158459205679, 0.21316272165576683,
                                      -0.39241777859071275),
                   {-17.107868825467708, 29.044306229047265, -19.107496180652966});
-  check_known(pointed_cone(15.08, 17.76), kCoarse_mm, wedge, kFine_mm, X_WA, X_AB, 0.001);
+  check_regression(pointed_cone(15.08, 17.76), kCoarse_mm, wedge, kFine_mm, X_WA, X_AB, 0.001);
 }
 
 // The plate's lower edge at x = 40 is 0.002239 mm deep in the torus, and a ball of 0.0019 mm fits
-// into both: 1.9 times the tolerance. Contact is said.
-TEST_CASE("a torus that an edge cuts interferes", "[.known]") {
+// into both: 1.9 times the tolerance. Contact was said.
+TEST_CASE("a torus that an edge cuts interferes", "[regression]") {
   const NamedShape torus{"torus 29.53 2.93", BRepPrimAPI_MakeTorus(29.53, 2.93).Solid(), {}};
   const Pose X_WA(Eigen::Quaterniond(0.64274881662853678, 0.60797805002584149,
                                      -0.060997039063694587, 0.46207792701540434),
@@ -463,19 +468,20 @@ TEST_CASE("a torus that an edge cuts interferes", "[.known]") {
   const Pose X_AB(Eigen::Quaterniond(0.23251601302011699, 0.61370543927799714, -0.75380891317075382,
                                      -0.032772853311183396),
                   {67.232305408170134, 29.405897204215538, -15.533653045002673});
-  check_known(tee_slot_plate(15.21, 33.36), kCoarse_mm, torus, kFine_mm, X_WA, X_AB, 0.001);
+  check_regression(tee_slot_plate(15.21, 33.36), kCoarse_mm, torus, kFine_mm, X_WA, X_AB, 0.001);
 }
 
-// Contact is right, but the witness is 0.009 mm off where 2e-15 is said.
-TEST_CASE("the witness of two nuts in contact is on both", "[.known]") {
+// The witness is on a flank of B, 0.009 mm from its edge: OpenCascade's distance is that from the
+// edge.
+TEST_CASE("the witness of two nuts in contact is on both", "[regression]") {
   const Pose X_WA(Eigen::Quaterniond(-0.70760764210181848, 0.084050277924733352,
                                      -0.58171802402286676, 0.39221310042732027),
                   {-3.3839197303723925, -13.576229878981787, 3.372163357675138});
   const Pose X_AB(Eigen::Quaterniond(0.097021673802954719, 0.26566126103081933,
                                      -0.22614689017576364, 0.93213114595738034),
                   {1.7331379767119939, -7.6431769806595877, -16.889698131414487});
-  check_known(hex_nut(13.99, 11.57, 8.69), kCoarse_mm, hex_nut(24.72, 11.92, 6.69), kFine_mm, X_WA,
-              X_AB, 0.01);
+  check_regression(hex_nut(13.99, 11.57, 8.69), kCoarse_mm, hex_nut(24.72, 11.92, 6.69), kFine_mm,
+                   X_WA, X_AB, 0.01);
 }
 
 }  // namespace
