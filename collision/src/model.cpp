@@ -15,14 +15,12 @@
 namespace dowel {
 namespace {
 
-constexpr std::uint32_t kTrianglesPerLeaf = 4;
-
 /// Sine of the dihedral angle below which two faces run on smoothly into each other (about 1
 /// degree).
 constexpr double kSmoothSine = 0.02;
 
 /// Planes closer than this are one.
-constexpr double kMainPlaneSlack_mm = 1.0e-9;
+constexpr double kSamePlane_mm = 1.0e-9;
 
 /// Measured rim errors are taken with this allowance: they are measured at the middle of a chord.
 constexpr double kRimAllowance = 1.25;
@@ -112,6 +110,22 @@ Eigen::Vector3d inner_reach(const Face& face, double slack_mm) {
   return slack_mm * (1.0 - cylinder->axis.array().square()).max(0.0).sqrt().matrix();
 }
 
+/// Whether an edge of `t` keeps all of `points` more than `margin_mm` out, seen along its normal.
+bool is_beyond_an_edge(const ModelTriangle& t, std::span<const Eigen::Vector3d> points,
+                       double margin_mm) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
+    const Eigen::Vector3d outward = edge.cross(t.normal);
+    const double limit = margin_mm * outward.norm();
+    if (std::ranges::all_of(points, [&](const Eigen::Vector3d& p) {
+          return outward.dot(p - t.corners[i]) > limit;
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool overlap(const BvhNode& node, const Aabb& box) {
   return (node.min.array() <= box.max.array()).all() && (box.min.array() <= node.max.array()).all();
 }
@@ -187,84 +201,6 @@ std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
   return reaches;
 }
 
-void CollisionModel::build_tree(const std::vector<Eigen::Vector3d>& reaches) {
-  struct Work {
-    std::uint32_t node;
-    std::uint32_t begin;
-    std::uint32_t end;
-  };
-  const auto count = static_cast<std::uint32_t>(triangles_.size());
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  std::vector<Aabb> boxes(count);
-  std::vector<Eigen::Vector3d> centers(count);
-  for (std::uint32_t t = 0; t < count; ++t) {
-    for (const Eigen::Vector3d& corner : triangles_[t].corners) boxes[t].extend(corner);
-    centers[t] = boxes[t].center();
-    boxes[t].min -= reaches[t];
-    boxes[t].max += reaches[t];
-  }
-  nodes_.clear();
-  nodes_.reserve(2 * count / kTrianglesPerLeaf + 1);
-  nodes_.emplace_back();
-  std::vector<Work> stack{{0, 0, count}};
-  while (!stack.empty()) {
-    const Work work = stack.back();
-    stack.pop_back();
-    Aabb box;
-    Aabb spread;
-    for (std::uint32_t i = work.begin; i < work.end; ++i) {
-      box.extend(boxes[order[i]]);
-      spread.extend(centers[order[i]]);
-    }
-    nodes_[work.node].min = box.min;
-    nodes_[work.node].max = box.max;
-    set_cone(nodes_[work.node], std::span(order).subspan(work.begin, work.end - work.begin));
-    if (work.end - work.begin <= kTrianglesPerLeaf) {
-      nodes_[work.node].first = work.begin;
-      nodes_[work.node].count = work.end - work.begin;
-      continue;
-    }
-    Eigen::Index axis = 0;
-    spread.size().maxCoeff(&axis);
-    const std::uint32_t middle = work.begin + (work.end - work.begin) / 2;
-    const auto begin = order.begin();
-    std::nth_element(begin + work.begin, begin + middle, begin + work.end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       return std::pair(centers[a][axis], a) < std::pair(centers[b][axis], b);
-                     });
-    const auto left = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[work.node].first = left;
-    nodes_.emplace_back();
-    nodes_.emplace_back();
-    stack.push_back({left, work.begin, middle});
-    stack.push_back({left + 1, middle, work.end});
-  }
-  std::vector<ModelTriangle> sorted_triangles;
-  std::vector<std::uint32_t> sorted_components;
-  sorted_triangles.reserve(count);
-  sorted_components.reserve(count);
-  for (const std::uint32_t t : order) {
-    sorted_triangles.push_back(triangles_[t]);
-    sorted_components.push_back(component_of_[t]);
-  }
-  triangles_ = std::move(sorted_triangles);
-  component_of_ = std::move(sorted_components);
-}
-
-void CollisionModel::set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const std::uint32_t t : triangles) sum += triangles_[t].normal;
-  if (!(sum.norm() > 0.0)) return;
-  const Eigen::Vector3d axis = sum.normalized();
-  double cosine = 1.0;
-  for (const std::uint32_t t : triangles) cosine = std::min(cosine, axis.dot(triangles_[t].normal));
-  if (!(cosine > 0.0)) return;
-  node.normal = axis.cast<float>();
-  node.cosine = static_cast<float>(cosine);
-  node.sine = static_cast<float>(std::sqrt(std::max(0.0, 1.0 - cosine * cosine)));
-}
-
 void CollisionModel::find_overhangs() {
   // Chords whose arc bulges over their own face, each with the facets of it that it reaches.
   std::vector<std::pair<std::uint32_t, Chord>> found;
@@ -277,11 +213,9 @@ void CollisionModel::find_overhangs() {
       const Eigen::Vector3d& a = t.corners[edge];
       const Eigen::Vector3d& b = t.corners[(edge + 1) % 3];
       if ((b - a).cross(t.normal).dot(offset) >= 0.0) continue;
-      Aabb box;
-      for (const Eigen::Vector3d& end : {a, b}) {
-        box.extend(end);
-        box.extend(end + kRimAllowance * offset);
-      }
+      const Eigen::Vector3d bulge = kRimAllowance * offset;
+      const std::array<Eigen::Vector3d, 4> around{a, b, a + bulge, b + bulge};
+      const Aabb box = bounds(around);
       stack.assign(1, 0);
       while (!stack.empty()) {
         const BvhNode& node = nodes_[stack.back()];
@@ -292,7 +226,10 @@ void CollisionModel::find_overhangs() {
           continue;
         }
         for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
-          if (triangles_[k].face == t.face) found.emplace_back(k, Chord{i, edge});
+          const ModelTriangle& other = triangles_[k];
+          if (other.face != t.face) continue;
+          const double margin_mm = other.slack_mm + t.normal_slack_mm + kCoincident_mm;
+          if (!is_beyond_an_edge(other, around, margin_mm)) found.emplace_back(k, Chord{i, edge});
         }
       }
     }
@@ -363,7 +300,7 @@ void CollisionModel::find_main_planes() {
       return entry.plane.normal.dot(plane->normal) > 0.0 &&
              entry.plane.normal.cross(plane->normal).norm() <= kParallel_rad &&
              std::abs(entry.plane.normal.dot(plane->origin - entry.plane.origin)) <=
-                 kMainPlaneSlack_mm;
+                 kSamePlane_mm;
     });
     if (known == entries.end()) {
       entries.push_back({*plane, face.area_mm2});

@@ -11,7 +11,7 @@
 namespace dowel {
 namespace {
 
-/// Deep enough for any tree of 32-bit triangle counts split at the median.
+/// Deep enough for any tree of 32-bit triangle counts of which no side has less than a quarter.
 constexpr std::size_t kStackSize = 80;
 
 /// A ray that passes an edge closer than this (relative to the triangle's size) is not counted but

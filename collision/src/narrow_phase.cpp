@@ -9,6 +9,7 @@
 #include "dowel/collision/axis_profile.h"
 #include "dowel/collision/box_separation.h"
 #include "exact_face.h"
+#include "facet_pairs.h"
 #include "kept_off.h"
 #include "triangle_pair.h"
 #include "witness.h"
@@ -36,132 +37,6 @@ constexpr double kOpposite = 0.999;
 
 /// Slack of the cones of normals for that angle and for single precision.
 constexpr double kConeSlack = 0.06;
-
-/// Boxes of a tree of A, in the frame of A, against boxes of B in the frame of B.
-class NodeSeparation {
- public:
-  explicit NodeSeparation(const Pose& X_BA)
-      : R_(X_BA.rotation_matrix()), abs_R_(R_.cwiseAbs()), translation_(X_BA.translation()) {}
-
-  /// Lower bound of the boxes' distance, from the planes of types 1 and 2; negative: they may meet.
-  double gap_mm(const BvhNode& a, const BvhNode& b) const {
-    const Eigen::Vector3d half_a = 0.5 * (a.max - a.min);
-    const Eigen::Vector3d half_b = 0.5 * (b.max - b.min);
-    const Eigen::Vector3d offset_B =
-        R_ * (0.5 * (a.max + a.min)) + translation_ - 0.5 * (b.max + b.min);
-    const double along_b = (offset_B.cwiseAbs() - half_b - abs_R_ * half_a).maxCoeff();
-    const double along_a =
-        ((R_.transpose() * offset_B).cwiseAbs() - half_a - abs_R_.transpose() * half_b).maxCoeff();
-    return std::max(along_a, along_b);
-  }
-
- private:
-  Eigen::Matrix3d R_;
-  Eigen::Matrix3d abs_R_;
-  Eigen::Vector3d translation_;
-};
-
-double size_squared(const BvhNode& node) {
-  return (node.max - node.min).squaredNorm();
-}
-
-/// Calls `visit(leaf of A, leaf of B)` for all pairs of leaves of wanted nodes whose boxes are
-/// `wanted(gap_mm)`; stops where it returns false. The nearer pair of children comes first.
-template <class WantedNodes, class Wanted, class Visit>
-void for_each_leaf_pair(const ModelPair& pair, NarrowScratch& scratch, QueryCounters& counters,
-                        const WantedNodes& wanted_nodes, const Wanted& wanted, const Visit& visit) {
-  const NodeSeparation separation(pair.X_BA);
-  const auto nodes_a = pair.a.nodes();
-  const auto nodes_b = pair.b.nodes();
-  scratch.stack.clear();
-  scratch.stack.push_back({0, 0, separation.gap_mm(nodes_a[0], nodes_b[0])});
-  ++counters.box_tests;
-  while (!scratch.stack.empty()) {
-    const auto [a, b, gap_mm] = scratch.stack.back();
-    scratch.stack.pop_back();
-    if (!wanted(gap_mm)) continue;
-    const BvhNode& node_a = nodes_a[a];
-    const BvhNode& node_b = nodes_b[b];
-    if (!wanted_nodes(node_a, node_b)) continue;
-    if (node_a.is_leaf() && node_b.is_leaf()) {
-      if (!visit(node_a, node_b)) return;
-      continue;
-    }
-    const bool split_a =
-        node_b.is_leaf() || (!node_a.is_leaf() && size_squared(node_a) > size_squared(node_b));
-    NarrowScratch::NodePair near{split_a ? node_a.first : a, split_a ? b : node_b.first, 0.0};
-    NarrowScratch::NodePair far{split_a ? node_a.first + 1 : a, split_a ? b : node_b.first + 1,
-                                0.0};
-    near.gap_mm = separation.gap_mm(nodes_a[near.a], nodes_b[near.b]);
-    far.gap_mm = separation.gap_mm(nodes_a[far.a], nodes_b[far.b]);
-    counters.box_tests += 2;
-    if (far.gap_mm < near.gap_mm) std::swap(near, far);
-    scratch.stack.push_back(far);
-    scratch.stack.push_back(near);
-  }
-}
-
-/// A facet of A as B sees it.
-struct PlacedTriangle {
-  Corners corners_B;
-  Eigen::Vector3d normal_B;
-};
-
-/// A pose as matrix and vector, for many points.
-struct Placement {
-  explicit Placement(const Pose& X_BA)
-      : rotation(X_BA.rotation_matrix()), translation(X_BA.translation()) {}
-  PlacedTriangle operator*(const ModelTriangle& t) const {
-    return {{rotation * t.corners[0] + translation, rotation * t.corners[1] + translation,
-             rotation * t.corners[2] + translation},
-            rotation * t.normal};
-  }
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d translation;
-};
-
-/// Distance of the boxes around two facets.
-double box_gap(const Corners& a, const Corners& b) {
-  const Eigen::Vector3d a_min = a[0].cwiseMin(a[1]).cwiseMin(a[2]);
-  const Eigen::Vector3d a_max = a[0].cwiseMax(a[1]).cwiseMax(a[2]);
-  const Eigen::Vector3d b_min = b[0].cwiseMin(b[1]).cwiseMin(b[2]);
-  const Eigen::Vector3d b_max = b[0].cwiseMax(b[1]).cwiseMax(b[2]);
-  return (a_min - b_max).cwiseMax(b_min - a_max).maxCoeff();
-}
-
-/// Lower bound of the distance of the corners from the plane; 0 where they lie on both sides.
-double distance_from_plane(const Corners& corners, const Eigen::Vector3d& normal,
-                           const Eigen::Vector3d& origin) {
-  const double d0 = normal.dot(corners[0] - origin);
-  const double d1 = normal.dot(corners[1] - origin);
-  const double d2 = normal.dot(corners[2] - origin);
-  return std::max({std::min({d0, d1, d2}), -std::max({d0, d1, d2}), 0.0});
-}
-
-/// How far two facets are apart for certain, by the plane of either: each may stand off its face
-/// along its normal, and the other along both. Negative: not apart.
-double apart_by_planes(const ModelTriangle& a, const PlacedTriangle& a_B, const ModelTriangle& b) {
-  const double sine = a_B.normal_B.cross(b.normal).norm();
-  const double of_a = a.normal_slack_mm + a.slack_mm * sine;
-  const double of_b = b.normal_slack_mm + b.slack_mm * sine;
-  const double by_b = distance_from_plane(a_B.corners_B, b.normal, b.corners[0]);
-  const double by_a = distance_from_plane(b.corners, a_B.normal_B, a_B.corners_B[0]);
-  return std::max(by_b - of_a - b.normal_slack_mm, by_a - of_b - a.normal_slack_mm);
-}
-
-/// How far `other` lies beyond one of the edges of a facet, along its plane; negative: beyond none.
-double beyond_edges(const Corners& corners, const Eigen::Vector3d& normal, const Corners& other) {
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3d edge = corners[(i + 1) % 3] - corners[i];
-    const Eigen::Vector3d outward = edge.cross(normal);
-    const double least =
-        std::min({outward.dot(other[0] - corners[i]), outward.dot(other[1] - corners[i]),
-                  outward.dot(other[2] - corners[i])});
-    if (least > 0.0) most = std::max(most, least / std::sqrt(edge.squaredNorm()));
-  }
-  return most;
-}
 
 /// A point in the middle of what two facets in one plane have in common; nothing where that is no
 /// area.
@@ -191,9 +66,9 @@ std::optional<Eigen::Vector3d> middle_of_overlap(const Corners& a, const Corners
 }
 
 double longest_edge(const Corners& corners) {
-  return std::sqrt(std::max({(corners[1] - corners[0]).squaredNorm(),
-                             (corners[2] - corners[1]).squaredNorm(),
-                             (corners[0] - corners[2]).squaredNorm()}));
+  return std::sqrt(
+      std::max({(corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[1]).squaredNorm(),
+                (corners[0] - corners[2]).squaredNorm()}));
 }
 
 Corners shifted(const Corners& corners, const Eigen::Vector3d& by) {
@@ -235,14 +110,12 @@ class Judge {
   /// The same by looking at all pairs of facets, without knowing of anything that forbids one or
   /// the other.
   PairVerdict decide_by_brute_force() {
-    const BvhNode all_a = all_facets(pair_.a);
-    const BvhNode all_b = all_facets(pair_.b);
     double apart = std::numeric_limits<double>::infinity();
-    for_each_pair(all_a, all_b, [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+    for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
       return !faces_lie_on_each_other(i, a_B, j) && !touches(i, a_B, j, apart);
     });
     if (is_suspect_) {
-      for_each_pair(all_a, all_b, [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+      for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
         return !crosses(i, a_B, j);
       });
     }
@@ -252,13 +125,6 @@ class Judge {
   }
 
  private:
-  static BvhNode all_facets(const CollisionModel& model) {
-    BvhNode node = model.nodes()[0];
-    node.first = 0;
-    node.count = static_cast<std::uint32_t>(model.triangles().size());
-    return node;
-  }
-
   // What forbids interference.
 
   bool boxes_are_shallow() {
@@ -390,30 +256,34 @@ class Judge {
           return gap_mm <= options_.tolerance_mm;
         },
         [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-          return for_each_pair(leaf_a, leaf_b,
-                               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                                 if (!found(i, a_B, j)) return true;
-                                 memory_.contact_a = i;
-                                 memory_.contact_b = j;
-                                 return false;
-                               });
+          return for_each_near_pair(
+              pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, left_out,
+              [this](const ModelTriangle& t) { return takes_part(t); },
+              [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                if (!found(i, a_B, j)) return true;
+                memory_.contact_a = i;
+                memory_.contact_b = j;
+                return false;
+              });
         });
     return left_out;
   }
 
-  /// Calls `visit(i, facet i of A in B, j)` until it returns false.
+  bool takes_part(const ModelTriangle& t) const {
+    return options_.holes == HoleMode::Exact || !t.is_hole;
+  }
+
+  /// Calls `visit(i, facet i of A in B, j)` for all facets until it returns false.
   template <class Visit>
-  bool for_each_pair(const BvhNode& leaf_a, const BvhNode& leaf_b, const Visit& visit) const {
-    for (std::uint32_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
+  void for_each_pair(const Visit& visit) const {
+    for (std::uint32_t i = 0; i < pair_.a.triangles().size(); ++i) {
       const ModelTriangle& a = pair_.a.triangles()[i];
-      if (options_.holes == HoleMode::Paper && a.is_hole) continue;
+      if (!takes_part(a)) continue;
       const PlacedTriangle a_B = placement_ * a;
-      for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
-        if (options_.holes == HoleMode::Paper && pair_.b.triangles()[j].is_hole) continue;
-        if (!visit(i, a_B, j)) return false;
+      for (std::uint32_t j = 0; j < pair_.b.triangles().size(); ++j) {
+        if (takes_part(pair_.b.triangles()[j]) && !visit(i, a_B, j)) return;
       }
     }
-    return true;
   }
 
   /// Whether two flat facets that face each other within the tolerance have an area in common.
@@ -470,8 +340,7 @@ class Judge {
     }
     if (is_between_faces(i, j, closest.on_b)) return true;
     const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
-    if (const auto place =
-            find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
+    if (const auto place = find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
       touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
       return true;
     }
@@ -552,13 +421,16 @@ class Judge {
         },
         [&](double gap_mm) { return gap_mm <= options_.tolerance_mm; },
         [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-          return for_each_pair(leaf_a, leaf_b,
-                               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                                 if (!crosses(i, a_B, j)) return true;
-                                 memory_.crossing_a = i;
-                                 memory_.crossing_b = j;
-                                 return false;
-                               });
+          double ignored = 0.0;
+          return for_each_near_pair(
+              pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, ignored,
+              [this](const ModelTriangle& t) { return takes_part(t); },
+              [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                if (!crosses(i, a_B, j)) return true;
+                memory_.crossing_a = i;
+                memory_.crossing_b = j;
+                return false;
+              });
         });
   }
 
@@ -667,6 +539,20 @@ class Judge {
   PairVerdict result_;
 };
 
+/// Lower bound of the distance of what two facets stand for; `limit_mm` where it is no less.
+double gap_below(double limit_mm, const ModelTriangle& a, const PlacedTriangle& a_B,
+                 const ModelTriangle& b) {
+  const double slack = a.slack_mm + b.slack_mm;
+  const double reach = limit_mm + slack;
+  if (apart_by_planes(a, a_B, b) > limit_mm || box_gap(a_B.corners_B, b.corners) > reach ||
+      beyond_edges(b.corners, b.normal, a_B.corners_B) > reach ||
+      beyond_edges(a_B.corners_B, a_B.normal_B, b.corners) > reach) {
+    return limit_mm;
+  }
+  const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
+  return std::sqrt(closest.distance_squared_mm2) - slack;
+}
+
 }  // namespace
 
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
@@ -692,24 +578,16 @@ double gap_lower_bound_mm(const ModelPair& pair, HoleMode holes, double cap_mm,
       },
       [&](double gap) { return gap < best && best > 0.0; },
       [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-        for (const ModelTriangle& a : pair.a.triangles().subspan(leaf_a.first, leaf_a.count)) {
-          if (holes == HoleMode::Paper && a.is_hole) continue;
-          const PlacedTriangle a_B = placement * a;
-          for (const ModelTriangle& b : pair.b.triangles().subspan(leaf_b.first, leaf_b.count)) {
-            if (holes == HoleMode::Paper && b.is_hole) continue;
-            ++counters.triangle_tests;
-            const double reach = best + a.slack_mm + b.slack_mm;
-            if (apart_by_planes(a, a_B, b) > best || box_gap(a_B.corners_B, b.corners) > reach ||
-                beyond_edges(b.corners, b.normal, a_B.corners_B) > reach ||
-                beyond_edges(a_B.corners_B, a_B.normal_B, b.corners) > reach) {
-              continue;
-            }
-            const ClosestPair closest =
-                closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
-            best =
-                std::min(best, std::sqrt(closest.distance_squared_mm2) - a.slack_mm - b.slack_mm);
-          }
-        }
+        double left_out = std::numeric_limits<double>::infinity();  // is no less than best
+        for_each_near_pair(
+            pair, placement, leaf_a, leaf_b, best, left_out,
+            [&](const ModelTriangle& t) { return holes == HoleMode::Exact || !t.is_hole; },
+            [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+              ++counters.triangle_tests;
+              best = std::min(best,
+                              gap_below(best, pair.a.triangles()[i], a_B, pair.b.triangles()[j]));
+              return true;
+            });
         return best > 0.0;
       });
   return std::max(best, 0.0);

@@ -1,7 +1,8 @@
 // The prompt on a pseudo-terminal.
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
-#include <regex>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -69,8 +70,16 @@ class Terminal {
  private:
   /// A line editor may move the cursor to where it stands in the middle of a word.
   std::string plain() const {
-    static const std::regex kMoves("\x1b\\[[0-9;?]*[A-Za-z]|\r");
-    return std::regex_replace(seen_, kMoves, "");
+    std::string result;
+    for (auto it = seen_.begin(); it != seen_.end(); ++it) {
+      if (*it == '\x1b') {  // up to the letter that ends the sequence
+        it = std::find_if(it, seen_.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+        if (it == seen_.end()) break;
+      } else if (*it != '\r') {
+        result += *it;
+      }
+    }
+    return result;
   }
 
   int terminal_ = -1;

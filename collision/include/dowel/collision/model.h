@@ -71,6 +71,8 @@ struct NearestPoint {
 /// exact surfaces meet.
 class CollisionModel {
  public:
+  static constexpr std::uint32_t kTrianglesPerLeaf = 4;  ///< at most
+
   /// `hole_faces`: faces that are walls of holes. Throws Error{FileMalformed} where the solid has a
   /// defect (kernel/mesh_defect.h).
   CollisionModel(std::shared_ptr<const FacetedSolid> solid,
