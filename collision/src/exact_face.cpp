@@ -197,7 +197,10 @@ FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle
   if (is_plane(face.surface)) {
     const Eigen::Vector3d c = p - t.normal * t.normal.dot(p - t.corners[0]);
     if (is_inside(t, c) || is_short_of_rim(model, t, c)) return at(c, p, FacePoint::Place::Face);
-    return nearest_on_rim_of_patch(model, t, closest_on_triangle(t.corners, p), p);
+    const TrianglePoint q = closest_on_triangle(t.corners, p);
+    // On the border the two notions of inside may differ by rounding.
+    if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
+    return nearest_on_rim_of_patch(model, t, q, p);
   }
   const Eigen::Vector3d c = closest_point(face.surface, p);
   if (foot_is_over(t, face, c) || (is_beside(t, face, c) && is_short_of_rim(model, t, c))) {
