@@ -18,7 +18,7 @@ constexpr std::size_t kBoxesPerStretch = 4;
 
 /// Cuts of one axis: places between or at the ends of `intervals` that cut as few of them as can
 /// be, at least `min_width` apart and about `stretches` of them.
-std::vector<double> choose_cuts(std::vector<Interval> intervals, std::size_t stretches,
+std::vector<double> choose_cuts(const std::vector<Interval>& intervals, std::size_t stretches,
                                 double min_width) {
   std::vector<double> cuts;
   if (intervals.size() <= kBoxesPerStretch || stretches < 2) return cuts;
@@ -148,6 +148,7 @@ void LayeredProjection::rebuild() {
   // As many layers as a cube of cells would have; each at least as tall as the middle box.
   const auto cells_wanted = static_cast<double>(count_) / static_cast<double>(kBoxesPerStretch);
   std::vector<double> sizes;
+  sizes.reserve(heights.size());
   for (const Interval& height : heights) sizes.push_back(height.high - height.low);
   const auto median = [](std::vector<double>& values) {
     if (values.empty()) return 0.0;
@@ -177,8 +178,8 @@ void LayeredProjection::rebuild() {
                                            static_cast<double>(kBoxesPerStretch))) +
         1;
     Layer& layer = layers_[z];
-    layer.x_cuts = choose_cuts(std::move(x_intervals), stretches, 0.5 * median(x_sizes));
-    layer.y_cuts = choose_cuts(std::move(y_intervals), stretches, 0.5 * median(y_sizes));
+    layer.x_cuts = choose_cuts(x_intervals, stretches, 0.5 * median(x_sizes));
+    layer.y_cuts = choose_cuts(y_intervals, stretches, 0.5 * median(y_sizes));
     layer.cells.resize((layer.x_cuts.size() + 1) * (layer.y_cuts.size() + 1));
   }
   for (const std::uint32_t id : ids) {
@@ -221,12 +222,12 @@ std::size_t LayeredProjection::cell_count() const {
 
 std::size_t LayeredProjection::memory_bytes() const {
   std::size_t bytes = boxes_.capacity() * sizeof(Extent) +
-                      seen_in_.capacity() * sizeof(seen_in_[0]) +
+                      seen_in_.capacity() * sizeof(std::uint32_t) +
                       layers_.capacity() * sizeof(Layer);
   for (const Layer& layer : layers_) {
     bytes += (layer.x_cuts.capacity() + layer.y_cuts.capacity()) * sizeof(double) +
-             layer.cells.capacity() * sizeof(layer.cells[0]);
-    for (const auto& cell : layer.cells) bytes += cell.capacity() * sizeof(cell[0]);
+             layer.cells.capacity() * sizeof(std::vector<std::uint32_t>);
+    for (const auto& cell : layer.cells) bytes += cell.capacity() * sizeof(std::uint32_t);
   }
   return bytes;
 }

@@ -243,11 +243,30 @@ void CollisionModel::find_overhangs() {
   std::partial_sum(overhang_begin_.begin(), overhang_begin_.end(), overhang_begin_.begin());
 }
 
+CollisionModel::InnerPoint CollisionModel::pushed_inwards(InnerPoint from, Eigen::Vector3d boundary,
+                                                          double step_mm) const {
+  constexpr int kPushes = 12;
+  double push = 0.5 * step_mm;
+  for (int k = 0; k < kPushes; ++k) {
+    const Eigen::Vector3d away = (from.point - boundary).normalized();
+    if (!away.allFinite()) break;
+    const Eigen::Vector3d moved = from.point + push * away;
+    const NearestPoint next = nearest(moved);
+    if (next.inside && next.distance_mm > from.depth_mm) {
+      from = {moved, next.distance_mm};
+      boundary = next.point;
+    } else {
+      push *= 0.5;
+    }
+  }
+  return from;
+}
+
 void CollisionModel::find_inner_points() {
   // From some facets of each component a step inward: the middle of the way to the far side is a
   // start, pushed away from the nearest boundary as long as that makes it deeper.
   constexpr std::size_t kStarts = 24;
-  constexpr int kPushes = 12;
+  constexpr int kSteps = 9;
   std::map<std::uint32_t, std::vector<std::uint32_t>> components;
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) components[component_of_[t]].push_back(t);
   for (const auto& [component, members] : components) {
@@ -261,24 +280,13 @@ void CollisionModel::find_inner_points() {
     for (std::size_t i = 0; i < members.size(); i += stride) {
       const ModelTriangle& t = triangles_[members[i]];
       const Eigen::Vector3d center = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
-      for (double step = 0.5 * reach; step > 1e-3 * reach; step *= 0.5) {
-        Eigen::Vector3d point = center - step * t.normal;
-        NearestPoint near = nearest(point);
+      double step = 0.5 * reach;
+      for (int k = 0; k < kSteps; ++k, step *= 0.5) {
+        const Eigen::Vector3d start = center - step * t.normal;
+        const NearestPoint near = nearest(start);
         if (!near.inside) continue;
-        double push = 0.5 * step;
-        for (int k = 0; k < kPushes; ++k) {
-          const Eigen::Vector3d away = (point - near.point).normalized();
-          if (!away.allFinite()) break;
-          const Eigen::Vector3d moved = point + push * away;
-          const NearestPoint next = nearest(moved);
-          if (next.inside && next.distance_mm > near.distance_mm) {
-            point = moved;
-            near = next;
-          } else {
-            push *= 0.5;
-          }
-        }
-        if (near.distance_mm > best.depth_mm) best = {point, near.distance_mm};
+        const InnerPoint found = pushed_inwards({start, near.distance_mm}, near.point, step);
+        if (found.depth_mm > best.depth_mm) best = found;
         break;
       }
     }
@@ -290,7 +298,7 @@ void CollisionModel::find_main_planes() {
   constexpr std::size_t kMainPlanes = 16;
   struct Entry {
     PlaneSurface plane;
-    double area_mm2;
+    double area_mm2 = 0.0;
   };
   std::vector<Entry> entries;
   for (const Face& face : solid_->faces) {
@@ -299,8 +307,7 @@ void CollisionModel::find_main_planes() {
     const auto known = std::ranges::find_if(entries, [&](const Entry& entry) {
       return entry.plane.normal.dot(plane->normal) > 0.0 &&
              entry.plane.normal.cross(plane->normal).norm() <= kParallel_rad &&
-             std::abs(entry.plane.normal.dot(plane->origin - entry.plane.origin)) <=
-                 kSamePlane_mm;
+             std::abs(entry.plane.normal.dot(plane->origin - entry.plane.origin)) <= kSamePlane_mm;
     });
     if (known == entries.end()) {
       entries.push_back({*plane, face.area_mm2});

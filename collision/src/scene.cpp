@@ -340,7 +340,7 @@ std::size_t CollisionScene::memory_bytes() const {
     if (body.element != nullptr) elements.push_back(body.element.get());
   }
   std::ranges::sort(elements);
-  elements.erase(std::ranges::unique(elements).begin(), elements.end());
+  elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
   for (const CollisionElement* element : elements) {
     bytes += sizeof(CollisionElement);
     if (element->is_loaded()) bytes += element->model().memory_bytes();

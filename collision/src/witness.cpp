@@ -280,7 +280,8 @@ std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d
 Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly) {
   Witness best = witness;
   const double least_growth = thoroughly ? kFineGrowth : kCoarseGrowth;
-  for (double growth = kCoarseGrowth; growth >= least_growth; growth = std::sqrt(growth)) {
+  double growth = kCoarseGrowth;
+  while (growth >= least_growth) {
     for (int step = 0; step < kDeepenings; ++step) {
       const double depth_mm = std::min(best.depth_a_mm, best.depth_b_mm);
       Search search(pair, growth * depth_mm);
@@ -290,6 +291,7 @@ Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly) {
       if (!deeper) break;
       best = *deeper;
     }
+    growth = std::sqrt(growth);
   }
   return best;
 }

@@ -55,9 +55,9 @@ TEST_CASE("the model finds exactly the boxes that brute force finds, as boxes co
   std::vector<std::uint32_t> slow;
   std::size_t hits = 0;
   int queries = 0;
-  for (int step = 0; step < 6000; ++step) {
+  for (int step = 0; step < 13'000; ++step) {
     const std::uint32_t id = random.index(static_cast<std::uint32_t>(boxes.size()));
-    const bool fill = step < 3000;
+    const bool fill = step < 3'000;
     if (!present[id] && (fill || random.coin())) {
       model.insert(id, boxes[id]);
       present[id] = true;

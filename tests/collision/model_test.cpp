@@ -13,6 +13,12 @@ namespace testing = dowel::testing;
 
 namespace {
 
+#ifdef DOWEL_SANITIZED
+constexpr int kNearest = 1'000;
+#else
+constexpr int kNearest = 100'000;
+#endif
+
 CollisionModel model_of(FacetedSolid solid) {
   return {std::make_shared<const FacetedSolid>(std::move(solid)), {}};
 }
@@ -91,7 +97,7 @@ TEST_CASE("the tree finds what brute force finds", "[property]") {
       testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20),
       testing::transformed(dowel::Pose::from_translation({0, 0, 60}), testing::cone(10, 25, 24))));
   testing::RandomGeometry random(7);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < kNearest; ++i) {
     const Eigen::Vector3d p = random.point(60) + Eigen::Vector3d(0, 0, 30);
     const NearestPoint fast = model.nearest(p);
     const NearestPoint slow = model.nearest_brute_force(p);

@@ -134,6 +134,8 @@ class CollisionModel {
   void set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const;
   void find_overhangs();
   void find_inner_points();
+  /// Away from the nearest place of the boundary, for as long as that makes it deeper.
+  InnerPoint pushed_inwards(InnerPoint from, Eigen::Vector3d boundary, double step_mm) const;
   void find_main_planes();
 
   std::shared_ptr<const FacetedSolid> solid_;
