@@ -222,9 +222,9 @@ class Finder {
       }
     }
     std::ranges::sort(result);
-    const auto last = std::ranges::unique(
-        result, [](double a, double b) { return b - a <= 10.0 * kEndSlack_mm; });
-    result.erase(last.begin(), last.end());
+    const auto last = std::unique(result.begin(), result.end(),
+                                  [](double a, double b) { return b - a <= 10.0 * kEndSlack_mm; });
+    result.erase(last, result.end());
     return result;
   }
 

@@ -55,6 +55,9 @@ void send_byte(std::uint8_t value) {
   write_all(kChildPipe, std::span(&byte, 1));
 }
 
+/// A child is ended after so many times its limit of processor time by the clock.
+constexpr double kWallOverCpu = 4.0;
+
 void set_limit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t hard) {
   const rlimit limit{soft, hard};
   ::setrlimit(resource, &limit);
@@ -62,9 +65,9 @@ void set_limit(__rlimit_resource resource, std::uint64_t soft, std::uint64_t har
 
 void limit_resources(const WorkerLimits& limits) {
   set_limit(RLIMIT_CORE, 0, 0);
-  // The wall clock ends a child first; this one holds when the parent is stopped.
+  // Processor time, so that a busy machine fails no file; the wall clock ends a child that waits.
   const auto seconds = static_cast<std::uint64_t>(std::ceil(std::min(limits.max_seconds, 1.0e9)));
-  set_limit(RLIMIT_CPU, seconds + 2, seconds + 4);
+  set_limit(RLIMIT_CPU, seconds, seconds + 2);
 #ifndef DOWEL_SANITIZED  // sanitizers reserve terabytes of addresses
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -175,7 +178,7 @@ class Child {
 
 Child::Child(std::size_t index, const WorkerLimits& limits, const WorkerTask& task)
     : index_(index), limits_(limits), start_(Clock::now()) {
-  const std::chrono::duration<double> allowed(std::min(limits.max_seconds, 1.0e9));
+  const std::chrono::duration<double> allowed(kWallOverCpu * std::min(limits.max_seconds, 1.0e9));
   deadline_ = start_ + std::chrono::duration_cast<Clock::duration>(allowed);
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_to_start();

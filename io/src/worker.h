@@ -14,7 +14,7 @@ enum class WorkerStage : std::uint8_t { Start, Read, Transfer, Mesh, Features };
 const char* stage_name(WorkerStage stage);
 
 struct WorkerLimits {
-  double max_seconds = 120.0;        ///< wall clock of one child
+  double max_seconds = 120.0;        ///< processor time of one child; four times that by the clock
   std::size_t max_memory_mb = 4096;  ///< address space that one child may add to its parent's
 };
 

@@ -75,6 +75,17 @@ TEST_CASE("a worker that hangs is ended at its time limit") {
   CHECK_FALSE(has_children());
 }
 
+TEST_CASE("a worker that computes without end is ended by its processor time") {
+  const WorkerOutcome outcome =
+      run_one({.max_seconds = 1.0}, [](std::size_t, const Report& report) {
+        report(WorkerStage::Mesh);
+        for (volatile unsigned i = 0;;) i = i + 1;
+        return std::vector<std::byte>{};
+      });
+  CHECK(outcome.failure == "time limit of 1 s reached in mesh");
+  CHECK_FALSE(has_children());
+}
+
 TEST_CASE("exceptions of a worker become its failure") {
   const auto thrown = [](auto exception) {
     return run_one({},

@@ -20,7 +20,7 @@ struct ImportOptions {
   /// True: all solids of the file become one part, placed as the file places them. False: each
   /// distinct part of an assembly becomes a part of its own.
   bool whole_file = false;
-  double max_seconds = 120.0;        ///< wall clock of the worker
+  double max_seconds = 120.0;        ///< processor time of the worker; four times that by the clock
   std::size_t max_memory_mb = 4096;  ///< address space of the worker
 };
 
