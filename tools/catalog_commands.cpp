@@ -221,7 +221,8 @@ void add_search(CLI::App& catalog) {
   CLI::App* const command = catalog.add_subcommand(
       "search",
       "Lists the elements that match all terms: words in the name, family, shape or features, and "
-      "comparisons of length, width, height, hole, shaft, diameter, depth, holes or volume.");
+      "comparisons of length, width, height, hole, shaft, slot, diameter, depth, holes or "
+      "volume.");
   command->footer("Example: dowel catalog search elements.db riser 'height>=80' hole=12");
   command->add_option("CATALOG.db", arguments->file)->required();
   command->add_option("TERM", arguments->terms, "riser, 'height>=80', hole=12, d=10..16")
@@ -245,6 +246,18 @@ void add_search(CLI::App& catalog) {
   throw Error(ErrorCode::NotFound, message);
 }
 
+std::string describe(const SlotShape& slot) {
+  std::string text(to_string(slot.type));
+  if (slot.nominal_mm != 0) text += " " + std::to_string(slot.nominal_mm) + " (ISO 299)";
+  text += ", " + short_number(slot.length_mm) + " along " + point_text(slot.run) + ", ends " +
+          std::string(to_string(slot.ends[0])) + " and " + std::string(to_string(slot.ends[1]));
+  if (slot.type == SlotShape::Type::Tee) {
+    text += "; throat " + short_number(slot.throat_depth_mm) + " deep, undercut " +
+            short_number(slot.undercut_width_mm) + " x " + short_number(slot.undercut_height_mm);
+  }
+  return text;
+}
+
 std::string describe(const Feature& feature) {
   std::string text;
   switch (feature.kind) {
@@ -264,7 +277,11 @@ std::string describe(const Feature& feature) {
     case FeatureKind::Face:
       text = short_number(feature.area_mm2) + " mm2";
       break;
-    default:
+    case FeatureKind::Slot:
+      if (feature.slot) text = describe(*feature.slot);
+      if (!feature.entry.empty()) text += " from " + feature.entry;
+      break;
+    case FeatureKind::Shaft:
       break;
   }
   return text;

@@ -169,7 +169,8 @@ Reply run_show(Console& console, Arguments& arguments) {
                 dimensions_text(element) + " mm, " + length_text(element.volume_mm3) + " mm3\n  " +
                 counted(count_features(element, FeatureKind::Hole), "hole") + ", " +
                 counted(count_features(element, FeatureKind::Shaft), "shaft") + ", " +
-                counted(count_features(element, FeatureKind::Face), "face");
+                counted(count_features(element, FeatureKind::Face), "face") + ", " +
+                counted(count_features(element, FeatureKind::Slot), "slot");
   reply.json["element"] = to_json(element);
   return reply;
 }

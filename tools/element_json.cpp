@@ -19,14 +19,28 @@ Json to_json(const HoleSegment& segment) {
   return json;
 }
 
+void add_slot(const SlotShape& slot, Json& json) {
+  json["run"] = tools::to_json(slot.run);
+  json["length"] = slot.length_mm;
+  json["ends"] = {to_string(slot.ends[0]), to_string(slot.ends[1])};
+  if (slot.type != SlotShape::Type::Tee) return;
+  json["throat_depth"] = slot.throat_depth_mm;
+  json["undercut_width"] = slot.undercut_width_mm;
+  json["undercut_height"] = slot.undercut_height_mm;
+  json["nominal"] = slot.nominal_mm == 0 ? Json() : Json(slot.nominal_mm);
+}
+
 Json to_json(const Feature& feature) {
   Json json;
   json["name"] = feature.name;
   json["kind"] = to_string(feature.kind);
-  if (feature.kind != FeatureKind::Face) {
+  if (feature.slot) json["type"] = to_string(feature.slot->type);
+  if (feature.kind == FeatureKind::Slot) {
+    json["width"] = feature.diameter_mm;
+  } else if (feature.kind != FeatureKind::Face) {
     json["diameter"] = feature.diameter_mm;
-    json["depth"] = feature.depth_mm;
   }
+  if (feature.kind != FeatureKind::Face) json["depth"] = feature.depth_mm;
   if (feature.kind == FeatureKind::Hole) {
     json["through"] = feature.through;
     json["blind_end"] = text_or_null(feature.blind_end);
@@ -42,6 +56,11 @@ Json to_json(const Feature& feature) {
       json["segments"].push_back(to_json(segment));
     }
   }
+  if (feature.kind == FeatureKind::Slot) {
+    json["through"] = feature.through;
+    json["entry"] = text_or_null(feature.entry);
+  }
+  if (feature.slot) add_slot(*feature.slot, json);
   if (feature.kind == FeatureKind::Face) json["area_mm2"] = feature.area_mm2;
   return json;
 }
@@ -108,6 +127,7 @@ Json to_summary_json(const Element& element) {
   json["holes"] = count_features(element, FeatureKind::Hole);
   json["shafts"] = count_features(element, FeatureKind::Shaft);
   json["faces"] = count_features(element, FeatureKind::Face);
+  json["slots"] = count_features(element, FeatureKind::Slot);
   json["source"] = element.source;
   return json;
 }

@@ -117,21 +117,52 @@ HoleSegment segment_from(const Json& json) {
           .to_mm = json.at("to_mm").get<double>()};
 }
 
+Json to_json(const SlotShape& slot) {
+  return {{"type", to_string(slot.type)},
+          {"run", to_json(slot.run)},
+          {"length_mm", slot.length_mm},
+          {"ends", {to_string(slot.ends[0]), to_string(slot.ends[1])}},
+          {"throat_depth_mm", slot.throat_depth_mm},
+          {"undercut_width_mm", slot.undercut_width_mm},
+          {"undercut_height_mm", slot.undercut_height_mm},
+          {"nominal_mm", slot.nominal_mm}};
+}
+
+SlotShape slot_from(const Json& json) {
+  using enum SlotShape::Type;
+  using enum SlotShape::End;
+  SlotShape slot;
+  slot.type = enum_from(json.at("type").get<std::string>(), std::array{Plain, Tee, Through});
+  slot.run = vector_from(json.at("run"));
+  slot.length_mm = json.at("length_mm").get<double>();
+  const auto ends = json.at("ends").get<std::array<std::string, 2>>();
+  for (const std::size_t i : {0U, 1U}) {
+    slot.ends[i] = enum_from(ends[i], std::array{Open, Flat, Round});
+  }
+  slot.throat_depth_mm = json.at("throat_depth_mm").get<double>();
+  slot.undercut_width_mm = json.at("undercut_width_mm").get<double>();
+  slot.undercut_height_mm = json.at("undercut_height_mm").get<double>();
+  slot.nominal_mm = json.at("nominal_mm").get<std::uint32_t>();
+  return slot;
+}
+
 Json to_json(const Feature& feature) {
   Json segments = Json::array();
   for (const HoleSegment& segment : feature.segments) segments.push_back(to_json(segment));
-  return {{"name", feature.name},
-          {"kind", to_string(feature.kind)},
-          {"origin", to_json(feature.origin)},
-          {"direction", to_json(feature.direction)},
-          {"diameter_mm", feature.diameter_mm},
-          {"depth_mm", feature.depth_mm},
-          {"through", feature.through},
-          {"blind_end", feature.blind_end},
-          {"entry", feature.entry},
-          {"segments", std::move(segments)},
-          {"area_mm2", feature.area_mm2},
-          {"faces", feature.faces}};
+  Json json{{"name", feature.name},
+            {"kind", to_string(feature.kind)},
+            {"origin", to_json(feature.origin)},
+            {"direction", to_json(feature.direction)},
+            {"diameter_mm", feature.diameter_mm},
+            {"depth_mm", feature.depth_mm},
+            {"through", feature.through},
+            {"blind_end", feature.blind_end},
+            {"entry", feature.entry},
+            {"segments", std::move(segments)},
+            {"area_mm2", feature.area_mm2},
+            {"faces", feature.faces}};
+  if (feature.slot) json["slot"] = to_json(*feature.slot);
+  return json;
 }
 
 Feature feature_from(const Json& json) {
@@ -147,6 +178,7 @@ Feature feature_from(const Json& json) {
   feature.blind_end = json.at("blind_end").get<std::string>();
   feature.entry = json.at("entry").get<std::string>();
   for (const Json& segment : json.at("segments")) feature.segments.push_back(segment_from(segment));
+  if (json.contains("slot")) feature.slot = slot_from(json.at("slot"));
   feature.area_mm2 = json.at("area_mm2").get<double>();
   feature.faces = json.at("faces").get<std::vector<std::uint32_t>>();
   return feature;

@@ -8,10 +8,14 @@
 namespace dowel {
 namespace {
 
-/// The side from which a feature is seen: out of a hole's opening, off a face.
+/// The side from which a feature is seen: out of the opening of a hole or slot, off a face.
 Eigen::Vector3d outward(const Feature& feature) {
-  return feature.kind == FeatureKind::Hole ? Eigen::Vector3d(-feature.direction)
-                                           : feature.direction;
+  const bool is_opening = feature.kind == FeatureKind::Hole || feature.kind == FeatureKind::Slot;
+  return is_opening ? Eigen::Vector3d(-feature.direction) : feature.direction;
+}
+
+double length_mm(const Feature& feature) {
+  return feature.slot ? feature.slot->length_mm : 0.0;
 }
 
 template <class Value>
@@ -56,6 +60,10 @@ std::vector<std::size_t> canonical_order(const std::vector<Feature>& features, O
   add(kSameFeature_mm, [](const Feature& f) { return f.diameter_mm; });
   add(kSameFeature_mm, [](const Feature& f) { return f.depth_mm; });
   add(kSameFeature_mm, [](const Feature& f) { return f.area_mm2; });
+  add(kSameFeature_mm, &length_mm);
+  for (const Eigen::Index i : {0, 1, 2}) {
+    add(kCoaxial_rad, [i](const Feature& f) { return f.slot ? -f.slot->run[i] : 0.0; });
+  }
 
   std::vector<std::size_t> order(features.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

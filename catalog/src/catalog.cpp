@@ -86,7 +86,7 @@ void harden(SQLite::Database& database) {
   database.exec("PRAGMA foreign_keys = ON");
 }
 
-void expect_tables(SQLite::Database& database, const std::string& file) {
+void expect_tables(SQLite::Database& database, const std::string& file, std::int64_t version) {
   SQLite::Statement triggers(database, "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
   if (triggers.executeStep()) {
     throw Error(ErrorCode::SchemaMismatch, file + ": has a trigger, \"" +
@@ -94,6 +94,7 @@ void expect_tables(SQLite::Database& database, const std::string& file) {
                                                "\", which no element catalogue has");
   }
   for (const SchemaTable& table : kCatalogTables) {
+    if (table.since > version) continue;
     SQLite::Statement sql(database,
                           "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
     sql.bind(1, table.name);
@@ -120,7 +121,20 @@ void expect_catalogue(SQLite::Database& database, const std::string& file) {
     throw Error(ErrorCode::SchemaMismatch, file + ": is a catalogue of version " +
                                                std::to_string(version) + ", which there never was");
   }
-  expect_tables(database, file);
+  expect_tables(database, file, version);
+}
+
+/// Brings a catalogue of an older version up to this one, in one transaction: two programs may
+/// start at once.
+void upgrade_tables(SQLite::Database& database) {
+  if (pragma_number(database, "PRAGMA user_version") == kCatalogVersion) return;
+  SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+  const std::int64_t version = pragma_number(database, "PRAGMA user_version");
+  for (const SchemaTable& table : kCatalogTables) {
+    if (table.since > version) database.exec(table.sql);
+  }
+  database.exec("PRAGMA user_version = " + std::to_string(kCatalogVersion));
+  transaction.commit();
 }
 
 bool is_blank(SQLite::Database& database) {
@@ -214,6 +228,7 @@ SQLite::Database open(const std::filesystem::path& file, Catalog::Access access)
     SQLite::Database database =
         access == Catalog::Access::ReadOnly ? open_read_only(file) : open_read_write(file);
     expect_catalogue(database, file.string());
+    if (access == Catalog::Access::ReadWrite) upgrade_tables(database);
     return database;
   });
 }

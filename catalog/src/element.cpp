@@ -37,6 +37,19 @@ std::optional<std::string> find_defect(const HoleSegment& segment) {
   return std::nullopt;
 }
 
+std::optional<std::string> find_defect(const SlotShape& slot, const Feature& feature) {
+  if (feature.kind != FeatureKind::Slot) return "it has the shape of a slot but is none";
+  if (!is_unit(slot.run)) return "its run is not of unit length";
+  if (std::abs(slot.run.dot(feature.direction)) > kStoredAxisSlack) {
+    return "its run is not square to its direction";
+  }
+  if (!are_sizes({slot.length_mm, slot.throat_depth_mm, slot.undercut_width_mm,
+                  slot.undercut_height_mm})) {
+    return "its length, throat or undercut is not a finite size";
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> find_defect(const Feature& feature) {
   if (!feature.origin.allFinite()) return "its origin is not finite";
   if (!is_unit(feature.direction)) return "its direction is not of unit length";
@@ -46,6 +59,7 @@ std::optional<std::string> find_defect(const Feature& feature) {
   for (const HoleSegment& segment : feature.segments) {
     if (auto defect = find_defect(segment)) return defect;
   }
+  if (feature.slot) return find_defect(*feature.slot, feature);
   return std::nullopt;
 }
 
@@ -88,6 +102,32 @@ std::string_view to_string(FeatureKind kind) {
 
 std::string_view to_string(HoleSegment::Type type) {
   return type == HoleSegment::Type::Cylinder ? "cylinder" : "cone";
+}
+
+std::string_view to_string(SlotShape::Type type) {
+  switch (type) {
+    case SlotShape::Type::Plain:
+      return "plain";
+    case SlotShape::Type::Tee:
+      return "tee";
+    case SlotShape::Type::Through:
+      return "through";
+  }
+  DOWEL_EXPECTS(false && "a known type of slot");
+  return {};
+}
+
+std::string_view to_string(SlotShape::End end) {
+  switch (end) {
+    case SlotShape::End::Open:
+      return "open";
+    case SlotShape::End::Flat:
+      return "flat";
+    case SlotShape::End::Round:
+      return "round";
+  }
+  DOWEL_EXPECTS(false && "a known end of a slot");
+  return {};
 }
 
 std::optional<std::string> find_defect(const Element& element) {

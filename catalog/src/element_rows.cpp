@@ -1,5 +1,6 @@
 #include "element_rows.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "dowel/kernel/error.h"
+#include "schema.h"
 
 namespace dowel {
 namespace {
@@ -48,6 +50,16 @@ constexpr const char* kInsertSegment = R"(
 constexpr const char* kSelectSegments = R"(
   SELECT type, diameter_mm, diameter_end_mm, from_mm, to_mm, feature_position
   FROM hole_segment WHERE element_id = ? ORDER BY feature_position, position)";
+
+constexpr const char* kInsertSlot = R"(
+  INSERT INTO slot (element_id, feature_position, type, run_x, run_y, run_z, length_mm, low_end,
+    high_end, throat_depth_mm, undercut_width_mm, undercut_height_mm, nominal_mm)
+  VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?))";
+
+constexpr const char* kSelectSlots = R"(
+  SELECT type, run_x, run_y, run_z, length_mm, low_end, high_end, throat_depth_mm,
+    undercut_width_mm, undercut_height_mm, nominal_mm, feature_position
+  FROM slot WHERE element_id = ? ORDER BY feature_position)";
 
 /// Binds the parameters of a statement from the first on.
 class RowWriter {
@@ -183,6 +195,16 @@ void insert_segments(SQLite::Database& database, std::int64_t element_id, std::i
   }
 }
 
+void insert_slot(SQLite::Database& database, std::int64_t element_id, std::int64_t position,
+                 const SlotShape& slot) {
+  SQLite::Statement statement(database, kInsertSlot);
+  RowWriter row(statement);
+  row << element_id << position << to_string(slot.type) << slot.run << slot.length_mm
+      << to_string(slot.ends[0]) << to_string(slot.ends[1]) << slot.throat_depth_mm
+      << slot.undercut_width_mm << slot.undercut_height_mm << slot.nominal_mm;
+  row.execute();
+}
+
 void insert_features(SQLite::Database& database, std::int64_t element_id,
                      const std::vector<Feature>& features) {
   SQLite::Statement statement(database, kInsertFeature);
@@ -196,13 +218,20 @@ void insert_features(SQLite::Database& database, std::int64_t element_id,
         << feature.area_mm2 << list_of(feature.faces);
     row.execute();
     insert_segments(database, element_id, position, feature.segments);
+    if (feature.slot) insert_slot(database, element_id, position, *feature.slot);
   }
 }
 
 /// The features of an element, and the position of each, which segments refer to.
 struct FeatureRows {
   std::vector<Feature> features;
-  std::vector<std::int64_t> positions;
+  std::vector<std::int64_t> positions;  ///< ascending
+
+  Feature* at(std::int64_t position) {
+    const auto found = std::lower_bound(positions.begin(), positions.end(), position);
+    if (found == positions.end() || *found != position) return nullptr;
+    return &features[static_cast<std::size_t>(found - positions.begin())];
+  }
 };
 
 FeatureRows select_features(SQLite::Database& database, std::int64_t element_id,
@@ -235,7 +264,6 @@ void select_segments(SQLite::Database& database, std::int64_t element_id, Featur
                      const std::string& place) {
   SQLite::Statement statement(database, kSelectSegments);
   statement.bind(1, element_id);
-  std::size_t i = 0;
   while (statement.executeStep()) {
     RowReader row(statement, place);
     HoleSegment segment;
@@ -244,12 +272,37 @@ void select_segments(SQLite::Database& database, std::int64_t element_id, Featur
     segment.diameter_end_mm = row.real();
     segment.from_mm = row.real();
     segment.to_mm = row.real();
-    const std::int64_t position = row.integer();
-    while (i < rows.positions.size() && rows.positions[i] < position) ++i;
-    if (i == rows.positions.size() || rows.positions[i] != position) {
+    Feature* const feature = rows.at(row.integer());
+    if (feature == nullptr) {
       throw Error(ErrorCode::FileMalformed, place + ": a hole segment belongs to no feature");
     }
-    rows.features[i].segments.push_back(segment);
+    feature->segments.push_back(segment);
+  }
+}
+
+void select_slots(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+                  const std::string& place) {
+  if (database.execAndGet("PRAGMA user_version").getInt64() < kSlotVersion) return;
+  using enum SlotShape::End;
+  SQLite::Statement statement(database, kSelectSlots);
+  statement.bind(1, element_id);
+  while (statement.executeStep()) {
+    RowReader row(statement, place);
+    SlotShape slot;
+    slot.type = row.one_of(
+        std::array{SlotShape::Type::Plain, SlotShape::Type::Tee, SlotShape::Type::Through});
+    slot.run = row.vector();
+    slot.length_mm = row.real();
+    for (SlotShape::End& end : slot.ends) end = row.one_of(std::array{Open, Flat, Round});
+    slot.throat_depth_mm = row.real();
+    slot.undercut_width_mm = row.real();
+    slot.undercut_height_mm = row.real();
+    slot.nominal_mm = row.count();
+    Feature* const feature = rows.at(row.integer());
+    if (feature == nullptr || feature->kind != FeatureKind::Slot) {
+      throw Error(ErrorCode::FileMalformed, place + ": the shape of a slot belongs to no slot");
+    }
+    feature->slot = slot;
   }
 }
 
@@ -317,6 +370,7 @@ std::optional<Element> select_element(SQLite::Database& database, std::string_vi
 
   FeatureRows rows = select_features(database, id, place);
   select_segments(database, id, rows, place);
+  select_slots(database, id, rows, place);
   element.features = std::move(rows.features);
   if (const auto defect = find_defect(element)) {
     throw Error(ErrorCode::FileMalformed, place + ": " + *defect);

@@ -116,6 +116,15 @@ std::vector<Feature> named_shafts(const std::vector<Feature>& shafts) {
   return result;
 }
 
+std::vector<Feature> named_slots(const std::vector<Feature>& slots) {
+  std::vector<Feature> result;
+  for (const std::size_t i : canonical_order(slots, OrderBy::Direction)) {
+    result.push_back(slots[i]);
+    result.back().name = "slot" + std::to_string(result.size());
+  }
+  return result;
+}
+
 std::vector<Feature> named_faces(const std::vector<Feature>& faces) {
   std::vector<Feature> result;
   std::vector<bool> is_named(faces.size(), false);

@@ -15,6 +15,9 @@ std::vector<Feature> named_holes(const std::vector<Feature>& holes);
 /// The same shafts as `pin1`, …, the thinnest first.
 std::vector<Feature> named_shafts(const std::vector<Feature>& shafts);
 
+/// The same slots as `slot1`, …, by position.
+std::vector<Feature> named_slots(const std::vector<Feature>& slots);
+
 /// The same faces: the outermost towards +z, -z, +x, -x, +y, -y as `top`, `bottom`, `right`,
 /// `left`, `back`, `front`; then the others as `f1`, …
 std::vector<Feature> named_faces(const std::vector<Feature>& faces);

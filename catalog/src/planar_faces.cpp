@@ -67,12 +67,7 @@ void add_circle_segments(const FacetedSolid& solid, const std::vector<FaceNode>&
 
 Feature make_face(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
                   std::vector<std::uint32_t> faces) {
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    if (graph[a].area_mm2 != graph[b].area_mm2) return graph[a].area_mm2 > graph[b].area_mm2;
-    return less_by_coordinates(plane_of(graph[a]).normal, plane_of(graph[b]).normal);
-  };
-  const PlaneSurface& plane =
-      plane_of(graph[*std::min_element(faces.begin(), faces.end(), before)]);
+  const PlaneSurface& plane = plane_of(graph[largest_face(graph, faces)]);
   PlaneSums sums;
   std::vector<double> exact_areas_mm2;
   for (const std::uint32_t face : faces) {
@@ -142,9 +137,17 @@ std::vector<bool> facets_of_curves(const std::vector<FaceNode>& graph) {
 
 }  // namespace
 
-std::vector<Feature> find_planar_faces(const FacetedSolid& solid,
-                                       const std::vector<FaceNode>& graph,
-                                       const std::vector<bool>& is_taken) {
+std::uint32_t largest_face(const std::vector<FaceNode>& graph,
+                           const std::vector<std::uint32_t>& faces) {
+  return *std::min_element(faces.begin(), faces.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (graph[a].area_mm2 != graph[b].area_mm2) return graph[a].area_mm2 > graph[b].area_mm2;
+    return less_by_coordinates(plane_of(graph[a]).normal, plane_of(graph[b]).normal);
+  });
+}
+
+std::vector<std::vector<std::uint32_t>> coplanar_sets(const FacetedSolid& solid,
+                                                      const std::vector<FaceNode>& graph,
+                                                      const std::vector<bool>& is_taken) {
   const std::vector<bool> is_facet = facets_of_curves(graph);
   const auto is_wanted = [&](std::size_t face) {
     return is_plane(graph[face].surface) && !is_taken[face] && !is_facet[face] &&
@@ -161,12 +164,22 @@ std::vector<Feature> find_planar_faces(const FacetedSolid& solid,
       }
     }
   }
-  std::vector<Feature> result;
+  std::vector<std::vector<std::uint32_t>> result;
   for (const std::vector<std::size_t>& members : sets.sets()) {
     if (!is_wanted(members.front())) continue;
     std::vector<std::uint32_t> faces;
     faces.reserve(members.size());
     for (const std::size_t face : members) faces.push_back(static_cast<std::uint32_t>(face));
+    result.push_back(std::move(faces));
+  }
+  return result;
+}
+
+std::vector<Feature> find_planar_faces(const FacetedSolid& solid,
+                                       const std::vector<FaceNode>& graph,
+                                       const std::vector<bool>& is_taken) {
+  std::vector<Feature> result;
+  for (std::vector<std::uint32_t>& faces : coplanar_sets(solid, graph, is_taken)) {
     result.push_back(make_face(solid, graph, std::move(faces)));
   }
   return result;

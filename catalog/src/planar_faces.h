@@ -7,6 +7,16 @@
 
 namespace dowel {
 
+/// The largest of coplanar faces. Which of two that are equal does not matter to its normal.
+std::uint32_t largest_face(const std::vector<FaceNode>& graph,
+                           const std::vector<std::uint32_t>& faces);
+
+/// Sets of coplanar neighbours, each sorted. Faces with `is_taken` set are left out, and so are the
+/// facets of curved walls in a mesh file.
+std::vector<std::vector<std::uint32_t>> coplanar_sets(const FacetedSolid& solid,
+                                                      const std::vector<FaceNode>& graph,
+                                                      const std::vector<bool>& is_taken);
+
 /// Planar faces, coplanar neighbours as one feature without name. Faces with `is_taken` set (rings
 /// and floors of holes) are left out, and so are the facets of curved walls in a mesh file. Area
 /// and centroid are those of the exact face where circles and lines bound it. Unordered.

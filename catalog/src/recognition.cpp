@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 #include "dowel/kernel/check.h"
@@ -13,6 +14,7 @@
 #include "planar_faces.h"
 #include "revolved_bands.h"
 #include "shafts.h"
+#include "slots.h"
 #include "surface_fit.h"
 
 namespace dowel {
@@ -23,12 +25,24 @@ double rounded(double length_mm) {
   return std::round(length_mm * kFeatureSteps_per_mm) / kFeatureSteps_per_mm + 0.0;
 }
 
-void round(Feature& feature) {
-  feature.origin = feature.origin.unaryExpr(&rounded);
-  for (double& component : feature.direction) {
+void round(Eigen::Vector3d& direction) {
+  for (double& component : direction) {
     if (std::abs(component) < kRounding) component = 0.0;
   }
-  feature.direction.normalize();
+  direction.normalize();
+}
+
+void round(SlotShape& slot) {
+  round(slot.run);
+  slot.length_mm = rounded(slot.length_mm);
+  slot.throat_depth_mm = rounded(slot.throat_depth_mm);
+  slot.undercut_width_mm = rounded(slot.undercut_width_mm);
+  slot.undercut_height_mm = rounded(slot.undercut_height_mm);
+}
+
+void round(Feature& feature) {
+  feature.origin = feature.origin.unaryExpr(&rounded);
+  round(feature.direction);
   feature.diameter_mm = rounded(feature.diameter_mm);
   feature.depth_mm = rounded(feature.depth_mm);
   feature.area_mm2 = rounded(feature.area_mm2);
@@ -38,6 +52,7 @@ void round(Feature& feature) {
     segment.from_mm = rounded(segment.from_mm);
     segment.to_mm = rounded(segment.to_mm);
   }
+  if (feature.slot) round(*feature.slot);
 }
 
 void append(std::vector<Feature>& all, std::vector<Feature> more) {
@@ -45,6 +60,22 @@ void append(std::vector<Feature>& all, std::vector<Feature> more) {
     round(feature);
     all.push_back(std::move(feature));
   }
+}
+
+/// Slots that open on one planar face get its name as their entry.
+std::vector<Feature> slots_with_entries(const std::vector<SlotFinding>& findings,
+                                        const std::map<std::uint32_t, std::string>& name_of_face) {
+  std::vector<Feature> slots;
+  for (const SlotFinding& finding : findings) {
+    std::set<std::string> entries;
+    for (const std::uint32_t face : finding.mouth_faces) {
+      const auto name = name_of_face.find(face);
+      if (name != name_of_face.end()) entries.insert(name->second);
+    }
+    slots.push_back(finding.feature);
+    if (entries.size() == 1) slots.back().entry = *entries.begin();
+  }
+  return slots;
 }
 
 }  // namespace
@@ -75,6 +106,7 @@ std::vector<Feature> recognise_features(const FacetedSolid& solid) {
   append(features, named_holes(holes));
   append(features, named_shafts(find_shafts(axes)));
   append(features, faces);
+  append(features, named_slots(slots_with_entries(find_slots(solid, graph), name_of_face)));
   return features;
 }
 

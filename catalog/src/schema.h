@@ -10,17 +10,25 @@ namespace dowel {
 /// "DWLC" in the database header: tells a catalogue from any other SQLite file.
 inline constexpr std::int32_t kCatalogApplicationId = 0x44574C43;
 
-/// Grows with every change of the tables below.
-inline constexpr std::int32_t kCatalogVersion = 1;
+/// Grows with every change of the tables below. Older ones are read as they are, and brought up to
+/// this one when they are opened for writing.
+///  1: the first
+///  2: `slot`
+inline constexpr std::int32_t kCatalogVersion = 2;
+
+/// The first version that keeps the shape of slots.
+inline constexpr std::int32_t kSlotVersion = 2;
 
 struct SchemaTable {
   const char* name;
-  const char* sql;  ///< as sqlite_schema keeps it, to the letter
+  const char* sql;         ///< as sqlite_schema keeps it, to the letter
+  std::int32_t since = 1;  ///< version that brought it
 };
 
-/// Every table that a catalogue of this version has. `element`, `feature` and `hole_segment` are
+/// Every table that a catalogue of this version has. `element`, `feature`, `hole_segment` and
+/// `slot` are
 /// columns rather than documents so that rules can be written over them in SQL.
-inline constexpr std::array<SchemaTable, 5> kCatalogTables{{
+inline constexpr std::array<SchemaTable, 6> kCatalogTables{{
     {"source", R"(CREATE TABLE source (
   id INTEGER PRIMARY KEY,
   path TEXT NOT NULL UNIQUE,
@@ -103,6 +111,26 @@ inline constexpr std::array<SchemaTable, 5> kCatalogTables{{
   FOREIGN KEY (element_id, feature_position) REFERENCES feature (element_id, position)
     ON DELETE CASCADE
 ) STRICT, WITHOUT ROWID)"},
+    {"slot",
+     R"(CREATE TABLE slot (
+  element_id INTEGER NOT NULL,
+  feature_position INTEGER NOT NULL,
+  type TEXT NOT NULL CHECK (type IN ('plain', 'tee', 'through')),
+  run_x REAL NOT NULL,
+  run_y REAL NOT NULL,
+  run_z REAL NOT NULL,
+  length_mm REAL NOT NULL,
+  low_end TEXT NOT NULL CHECK (low_end IN ('open', 'flat', 'round')),
+  high_end TEXT NOT NULL CHECK (high_end IN ('open', 'flat', 'round')),
+  throat_depth_mm REAL NOT NULL,
+  undercut_width_mm REAL NOT NULL,
+  undercut_height_mm REAL NOT NULL,
+  nominal_mm INTEGER NOT NULL,
+  PRIMARY KEY (element_id, feature_position),
+  FOREIGN KEY (element_id, feature_position) REFERENCES feature (element_id, position)
+    ON DELETE CASCADE
+) STRICT, WITHOUT ROWID)",
+     kSlotVersion},
     {"content", R"(CREATE TABLE content (
   element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
   kind TEXT NOT NULL CHECK (kind IN ('facets', 'brep')),

@@ -20,7 +20,7 @@ using Quantity = SearchCondition::Quantity;
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kOperators = "<>=";
 
-constexpr std::array<std::pair<std::string_view, Quantity>, 13> kQuantities{{
+constexpr std::array<std::pair<std::string_view, Quantity>, 14> kQuantities{{
     {"length", Quantity::Length},
     {"l", Quantity::Length},
     {"width", Quantity::Width},
@@ -29,6 +29,7 @@ constexpr std::array<std::pair<std::string_view, Quantity>, 13> kQuantities{{
     {"h", Quantity::Height},
     {"hole", Quantity::Hole},
     {"shaft", Quantity::Shaft},
+    {"slot", Quantity::Slot},
     {"diameter", Quantity::Diameter},
     {"d", Quantity::Diameter},
     {"depth", Quantity::Depth},
@@ -152,6 +153,8 @@ std::vector<double> values(const Element& element, Quantity quantity) {
       for (const HoleSegment& segment : feature.segments) {
         if (segment.type == HoleSegment::Type::Cylinder) result.push_back(segment.diameter_mm);
       }
+    } else if (feature.kind == FeatureKind::Slot && quantity == Quantity::Slot) {
+      result.push_back(feature.diameter_mm);
     } else if (feature.kind == FeatureKind::Shaft && wants_shafts) {
       result.push_back(feature.diameter_mm);
     }

@@ -18,7 +18,7 @@ namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 1;
+constexpr int kPipelineVersion = 2;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {

@@ -151,6 +151,7 @@ TEST_CASE("What is put into a catalogue is found again to the bit") {
     CHECK(actual.blind_end == expected.blind_end);
     CHECK(actual.entry == expected.entry);
     CHECK(actual.segments == expected.segments);
+    CHECK(actual.slot == expected.slot);
     CHECK(actual.area_mm2 == expected.area_mm2);
     CHECK(actual.faces == expected.faces);
   }
@@ -333,9 +334,9 @@ TEST_CASE("What is no catalogue is refused by name", "[fault]") {
   }
   SECTION("a catalogue of a newer version") {
     writable(file);
-    execute(file, "PRAGMA user_version = 2");
+    execute(file, "PRAGMA user_version = 3");
     CHECK(refused(read_only) == ErrorCode::SchemaMismatch);
-    CHECK_THAT(error_of([&] { readable(file); }).what(), Catch::Contains("version 2"));
+    CHECK_THAT(error_of([&] { readable(file); }).what(), Catch::Contains("version 3"));
     CHECK(refused(read_write) == ErrorCode::SchemaMismatch);
   }
   SECTION("a catalogue with another table") {
@@ -448,13 +449,39 @@ TEST_CASE("Rows that make no sound element are reported with the element's name"
       "UPDATE feature SET faces = '[1,-2]'", "UPDATE feature SET faces = ''",
       "UPDATE feature SET faces = '[99999999999]'", "UPDATE feature SET faces = '[1]x'",
       "UPDATE feature SET direction_x = 0.5", "UPDATE feature SET name = '' WHERE position = 1",
-      "UPDATE hole_segment SET to_mm = -1.0");
+      "UPDATE hole_segment SET to_mm = -1.0", "UPDATE slot SET run_x = 0.5",
+      "UPDATE slot SET length_mm = -1.0", "UPDATE slot SET nominal_mm = -14",
+      "UPDATE slot SET feature_position = 0");
   CAPTURE(edit);
   execute(file, edit);
   const Catalog catalog = readable(file);
   const Error error = error_of([&] { catalog.find("a"); });
   CHECK(error.code() == ErrorCode::FileMalformed);
   CHECK_THAT(error.what(), Catch::Contains(file.string()) && Catch::Contains("\"a\""));
+}
+
+TEST_CASE("A catalogue of the first version is read, and brought up to this one by a writer") {
+  const TemporaryFolder folder;
+  const auto file = folder / "c.db";
+  Catalog(file, Catalog::Access::ReadWrite).put(block_source(), std::vector{block_record("a")});
+  execute(file, "DROP TABLE slot; PRAGMA user_version = 1");
+  const std::string before = read_text(file);
+  {
+    const Catalog catalog = readable(file);
+    const auto found = catalog.find("a");
+    REQUIRE(found);
+    REQUIRE(found->find_feature("slot1") != nullptr);
+    CHECK_FALSE(found->find_feature("slot1")->slot);
+  }
+  CHECK(read_text(file) == before);
+  {
+    Catalog catalog = writable(file);
+    put(catalog, "b.step", {block_record("b")});
+  }
+  const Catalog catalog = readable(file);
+  CHECK_FALSE(catalog.find("a")->find_feature("slot1")->slot);
+  CHECK(catalog.find("b")->find_feature("slot1")->slot ==
+        block_record("b").element.features[4].slot);
 }
 
 TEST_CASE("A second writer waits, then says who is in the way", "[fault]") {

@@ -63,7 +63,22 @@ inline ElementRecord block_record(const std::string& name, double length_mm = 80
   top.kind = FeatureKind::Face;
   top.area_mm2 = length_mm * 40.0;
   top.faces = {1};
-  element.features = {bore, through, pin, top};
+  Feature slot;
+  slot.name = "slot1";
+  slot.kind = FeatureKind::Slot;
+  slot.origin = {1.0, 2.0, 20.0};
+  slot.direction = {0.0, 0.0, -1.0};
+  slot.diameter_mm = 14.0;
+  slot.depth_mm = 25.0;
+  slot.slot = SlotShape{.type = SlotShape::Type::Tee,
+                        .run = {0.6, 0.8, 0.0},
+                        .length_mm = 70.0,
+                        .ends = {SlotShape::End::Open, SlotShape::End::Round},
+                        .throat_depth_mm = 15.0,
+                        .undercut_width_mm = 24.0,
+                        .undercut_height_mm = 10.0,
+                        .nominal_mm = 14};
+  element.features = {bore, through, pin, top, slot};
   return record;
 }
 

@@ -1,6 +1,8 @@
 // dowel catalog, run as its users run it.
 
+#include <array>
 #include <sstream>
+#include <utility>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -23,6 +25,34 @@ std::string block_off(const std::string& height) {
          "0 40" + h +
          "3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n"
          "3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
+}
+
+/// A block of 100 x 60 x 20 along x with a groove of 12 x 8 in the middle of its top.
+std::string grooved_off() {
+  const std::vector<std::pair<int, int>> outline{{0, 0},   {60, 0},  {60, 20}, {36, 20},
+                                                 {36, 12}, {24, 12}, {24, 20}, {0, 20}};
+  std::string text = "OFF\n16 28 0\n";
+  for (const char* x : {"0 ", "100 "}) {
+    for (const auto& [y, z] : outline) {
+      text += x + std::to_string(y) + " " + std::to_string(z) + "\n";
+    }
+  }
+  for (int i = 0; i < 8; ++i) {
+    const std::string a = std::to_string(i);
+    const std::string b = std::to_string((i + 1) % 8);
+    const std::string a_far = std::to_string(i + 8);
+    const std::string b_far = std::to_string((i + 1) % 8 + 8);
+    text += "3 " + a + " " + b_far + " " + a_far + "\n3 " + a + " " + b + " " + b_far + "\n";
+  }
+  const std::vector<std::array<int, 3>> cap{{0, 1, 4}, {1, 3, 4}, {1, 2, 3},
+                                            {0, 4, 5}, {0, 5, 7}, {5, 6, 7}};
+  for (const auto& [a, b, c] : cap) {
+    const auto line = [](int p, int q, int r) {
+      return "3 " + std::to_string(p) + " " + std::to_string(q) + " " + std::to_string(r) + "\n";
+    };
+    text += line(a, c, b) + line(a + 8, b + 8, c + 8);
+  }
+  return text;
 }
 
 std::vector<Json> json_lines(const std::string& text) {
@@ -212,6 +242,34 @@ TEST_CASE("An element is shown with the documented keys in their order") {
     CHECK(feature["kind"] == "face");
     CHECK(keys_of(feature["axis"]) == std::vector<std::string>{"origin", "direction"});
   }
+}
+
+TEST_CASE("A slot is shown with its width, run and ends, and found by its width") {
+  const Parts parts;
+  write_text(parts / "parts/grooved.off", grooved_off());
+  parts.build();
+  const ProgramResult result = parts.dowel({"catalog", "show", "c.db", "grooved", "--json"});
+  REQUIRE(result.exit_code == 0);
+  const Json slot = json_lines(result.out).at(0)["features"].back();
+  CHECK(slot == Json({{"name", "slot1"},
+                      {"kind", "slot"},
+                      {"type", "plain"},
+                      {"width", 12.0},
+                      {"depth", 8.0},
+                      {"axis", {{"origin", {50.0, 30.0, 20.0}}, {"direction", {0.0, 0.0, -1.0}}}},
+                      {"through", false},
+                      {"entry", nullptr},
+                      {"run", {1.0, 0.0, 0.0}},
+                      {"length", 100.0},
+                      {"ends", {"open", "open"}}}));
+  const ProgramResult text = parts.dowel({"catalog", "show", "c.db", "grooved"});
+  CHECK_THAT(text.out, Catch::Contains("slot1") && Catch::Contains("plain, 100 along"));
+  const auto found = [&](const char* term) {
+    return parts.dowel({"catalog", "search", "c.db", term, "--json"}).out;
+  };
+  CHECK_THAT(found("slot=12"), Catch::Contains("\"grooved\""));
+  CHECK_THAT(found("slot1"), Catch::Contains("\"grooved\""));
+  CHECK(found("slot<12").empty());
 }
 
 TEST_CASE("A name that is not there gets a guess") {

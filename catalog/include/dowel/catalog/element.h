@@ -59,6 +59,12 @@ std::string_view to_string(FeatureKind kind);
 /// "cylinder" or "cone".
 std::string_view to_string(HoleSegment::Type type);
 
+/// "plain", "tee" or "through".
+std::string_view to_string(SlotShape::Type type);
+
+/// "open", "flat" or "round".
+std::string_view to_string(SlotShape::End end);
+
 /// First reason why `element` cannot be used as it stands, as one sentence that names the field or
 /// feature: a number that is not finite, a negative size, a box whose axes are not orthonormal, a
 /// direction that is not of unit length, two features of one name. Nothing where it is sound.

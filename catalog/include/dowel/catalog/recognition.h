@@ -7,9 +7,10 @@
 
 namespace dowel {
 
-/// Holes, shafts and planar faces of `solid`, named and in canonical order: holes (grid holes by
-/// row and column, then the others), shafts, faces; within a kind by position. The same solid gives
-/// the same features whatever the order of its faces. See catalog/README.md for the rules.
+/// Holes, shafts, planar faces and slots of `solid`, named and in canonical order: holes (grid
+/// holes by row and column, then the others), shafts, faces, slots; within a kind by position. The
+/// same solid gives the same features whatever the order of its faces. See catalog/README.md for
+/// the rules.
 std::vector<Feature> recognise_features(const FacetedSolid& solid);
 
 ShapeClass classify_shape(const FacetedSolid& solid, const std::vector<Feature>& features);

@@ -20,6 +20,7 @@ struct SearchCondition {
     Height,    ///< mm, the same for z
     Hole,      ///< mm, diameter of some cylinder of some hole
     Shaft,     ///< mm, diameter of some shaft
+    Slot,      ///< mm, width of some slot
     Diameter,  ///< mm, either of the two
     Depth,     ///< mm, of some hole
     Holes,     ///< how many holes it has
