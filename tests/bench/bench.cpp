@@ -18,6 +18,7 @@ std::vector<Method> all_methods() {
       {"dowel", make_dowel},
       {"dowel first", make_dowel_first},
       {"dowel paper", make_dowel_paper},
+      {"published", make_published, 5},
 #ifdef DOWEL_BENCH_FCL
       {"FCL OBBRSS", make_fcl_obbrss},
 #endif

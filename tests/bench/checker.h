@@ -42,8 +42,9 @@ class Checker {
 };
 
 /// Names: "dowel", "dowel first" (stops at the first interference), "dowel paper" (hole triangles
-/// dropped), and of the peers that were found at build time "FCL OBBRSS", "FCL OBB float", "ODE",
-/// "Bullet", "CGAL". The slow ones get fewer poses.
+/// dropped), "published" (the paper's method as it stands there), and of the peers that were found
+/// at build time "FCL OBBRSS", "FCL OBB float", "ODE", "Bullet", "CGAL". The slow ones get fewer
+/// poses.
 struct Method {
   std::string_view name;
   std::unique_ptr<Checker> (*make)() = nullptr;
@@ -53,6 +54,7 @@ struct Method {
 std::unique_ptr<Checker> make_dowel();
 std::unique_ptr<Checker> make_dowel_first();
 std::unique_ptr<Checker> make_dowel_paper();
+std::unique_ptr<Checker> make_published();
 std::unique_ptr<Checker> make_fcl_obbrss();
 std::unique_ptr<Checker> make_fcl_obb_float();
 std::unique_ptr<Checker> make_ode();
