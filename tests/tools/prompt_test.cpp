@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include "../assembly/fixture_elements.h"
@@ -34,14 +35,18 @@ class Terminal {
     }
   }
   ~Terminal() {
-    ::close(terminal_);
+    if (terminal_ >= 0) ::close(terminal_);
     if (child_ > 0) ::waitpid(child_, nullptr, 0);
   }
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
+  /// Expects a prompt. The editor writes it just before it takes the keys one by one: a Ctrl-D that
+  /// comes between is the terminal's own, and lost.
   void type(const std::string& keys) {
     seen_.clear();
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (takes_lines() && std::chrono::steady_clock::now() < deadline) ::usleep(1000);
     if (::write(terminal_, keys.data(), keys.size()) < 0) throw std::runtime_error("write failed");
   }
 
@@ -49,7 +54,7 @@ class Terminal {
   /// where none comes in time. A line that is edited stands behind its prompt, so that a prompt at
   /// the end of all is a new one; it is written once the editor reads keys.
   std::string reply() {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
     while (!plain().ends_with("\ndowel> ") && std::chrono::steady_clock::now() < deadline) {
       pollfd polled{terminal_, POLLIN, 0};
       if (::poll(&polled, 1, 1000) <= 0) continue;
@@ -61,13 +66,22 @@ class Terminal {
     return plain();
   }
 
+  /// Ends a program that has not ended.
   int exit_status() {
+    ::close(std::exchange(terminal_, -1));
     int status = 0;
     ::waitpid(std::exchange(child_, -1), &status, 0);
     return status;
   }
 
  private:
+  static constexpr std::chrono::minutes kPatience{1};
+
+  bool takes_lines() const {
+    termios mode{};
+    return ::tcgetattr(terminal_, &mode) == 0 && (mode.c_lflag & ICANON) != 0;
+  }
+
   /// A line editor may move the cursor to where it stands in the middle of a word.
   std::string plain() const {
     std::string result;
