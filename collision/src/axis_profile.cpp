@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "dowel/collision/model.h"
-#include "dowel/collision/scene.h"
 #include "dowel/kernel/tolerance.h"
 
 namespace dowel {
@@ -23,9 +22,6 @@ constexpr std::size_t kMaxSteps = 16;
 /// Share of a full turn that cylinders must cover to count as round.
 constexpr double kRound = 1.0 - 1.0e-6;
 
-/// Axes further apart than this (radians) are not compared.
-constexpr double kMaxTilt = 0.1;
-
 /// A face of revolution about the axis that is looked at.
 struct CoaxialFace {
   std::uint32_t face;
@@ -33,6 +29,7 @@ struct CoaxialFace {
   double to_mm;
   double least_radius_mm;
   double most_radius_mm;
+  const ConeSurface* cone = nullptr;  ///< else the radii hold for all of it
 };
 
 bool same_axis(const CylinderSurface& a, const CylinderSurface& b) {
@@ -40,12 +37,6 @@ bool same_axis(const CylinderSurface& a, const CylinderSurface& b) {
   const Eigen::Vector3d between = b.origin - a.origin;
   return (between - a.axis.dot(between) * a.axis).norm() <= kCoincident_mm;
 }
-
-/// A stretch of an axis.
-struct Stretch {
-  double from_mm;
-  double to_mm;
-};
 
 /// In the plane normal to the axis, the part of a triangle between two heights.
 struct Clipped {
@@ -183,7 +174,7 @@ class Finder {
           (cone != nullptr && same_axis(axis, {cone->apex, cone->axis, 0.0})) ||
           (torus != nullptr && same_axis(axis, {torus->center, torus->axis, 0.0}));
       if (!is_coaxial) continue;
-      CoaxialFace entry{f, kInfinity, -kInfinity, kInfinity, 0.0};
+      CoaxialFace entry{f, kInfinity, -kInfinity, kInfinity, 0.0, cone};
       for (const ModelTriangle* t : facets_[f]) {
         for (const Eigen::Vector3d& corner : t->corners) {
           const Eigen::Vector3d p = frame(corner);
@@ -236,22 +227,45 @@ class Finder {
     if (ends.size() < 2 || ends.size() > kMaxSteps) return profile;
     const AxisFrame frame(axis);
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-      ProfileStep step{ends[i], ends[i + 1], is_bore ? kInfinity : 0.0, false};
+      const double start_mm = is_bore ? kInfinity : 0.0;
+      ProfileStep step{ends[i], ends[i + 1], start_mm, start_mm, false};
       for (const CoaxialFace& face : coaxial) {
         if (face.to_mm <= step.from_mm + kEndSlack_mm) continue;
         if (face.from_mm >= step.to_mm - kEndSlack_mm) continue;
-        step.radius_mm = is_bore ? std::min(step.radius_mm, face.least_radius_mm)
-                                 : std::max(step.radius_mm, face.most_radius_mm);
+        if (face.cone != nullptr) {
+          bound(step, radius_of(*face.cone, frame, step.from_mm),
+                radius_of(*face.cone, frame, step.to_mm), is_bore);
+        } else {
+          const double radius = is_bore ? face.least_radius_mm : face.most_radius_mm;
+          bound(step, radius, radius, is_bore);
+        }
       }
       take_facets(step, frame, coaxial, is_bore);
       const double middle = 0.5 * (step.from_mm + step.to_mm);
-      if (is_bore && model_.facets_contain(frame.origin + middle * frame.w)) step.radius_mm = 0.0;
+      if (is_bore && model_.facets_contain(frame.origin + middle * frame.w)) {
+        bound(step, 0.0, 0.0, is_bore);
+      }
       step.is_round = goes_round(frame, coaxial, step);
-      if (is_bore ? step.radius_mm < kInfinity : step.radius_mm > 0.0) {
+      if (is_bore ? step.most_radius_mm() < kInfinity : step.most_radius_mm() > 0.0) {
         profile.steps.push_back(step);
       }
     }
     return profile;
+  }
+
+  static double radius_of(const ConeSurface& cone, const AxisFrame& frame, double height_mm) {
+    const double from_apex = height_mm - frame.w.dot(cone.apex - frame.origin);
+    return std::abs(from_apex) * std::tan(cone.half_angle_rad);
+  }
+
+  /// Bounds a step by radii at its two ends. Radii of surfaces that cross in between lie on the
+  /// safe side of the straight line: the larger of two lines bulges down, the smaller one up.
+  static void bound(ProfileStep& step, double from_radius_mm, double to_radius_mm, bool is_bore) {
+    const auto tighter = [is_bore](double a, double b) {
+      return is_bore ? std::min(a, b) : std::max(a, b);
+    };
+    step.from_radius_mm = tighter(step.from_radius_mm, from_radius_mm);
+    step.to_radius_mm = tighter(step.to_radius_mm, to_radius_mm);
   }
 
   /// Takes all other facets into account, those that the tree finds able to change the step.
@@ -265,7 +279,8 @@ class Finder {
       stack_.pop_back();
       const BoxRange range(frame, node);
       if (range.high_mm <= low || range.low_mm >= high) continue;
-      if (is_bore ? range.nearest_mm >= step.radius_mm : range.farthest_mm <= step.radius_mm) {
+      if (is_bore ? range.nearest_mm >= step.most_radius_mm()
+                  : range.farthest_mm <= step.least_radius_mm()) {
         continue;
       }
       if (!node.is_leaf()) {
@@ -292,21 +307,20 @@ class Finder {
     if (most + tall <= low || least - tall >= high) return;
     const Clipped part = clip(corners, low - tall, high + tall);
     if (part.count == 0) return;
-    if (is_bore) {
-      step.radius_mm = std::min(step.radius_mm, std::max(smallest_radius(part) - t.slack_mm, 0.0));
-    } else {
-      step.radius_mm = std::max(step.radius_mm, largest_radius(part) + t.slack_mm);
-    }
+    const double radius = is_bore ? std::max(smallest_radius(part) - t.slack_mm, 0.0)
+                                  : largest_radius(part) + t.slack_mm;
+    bound(step, radius, radius, is_bore);
   }
 
   /// Whether cylinders of the step's radius cover it all the way round: by the area of their
   /// facets, unrolled.
   bool goes_round(const AxisFrame& frame, const std::vector<CoaxialFace>& coaxial,
                   const ProfileStep& step) const {
+    if (step.from_radius_mm != step.to_radius_mm) return false;
     double share = 0.0;
     for (const CoaxialFace& face : coaxial) {
       if (!std::holds_alternative<CylinderSurface>(model_.face(face.face).surface) ||
-          std::abs(face.least_radius_mm - step.radius_mm) > kEndSlack_mm ||
+          std::abs(face.least_radius_mm - step.from_radius_mm) > kEndSlack_mm ||
           face.from_mm > step.from_mm + 10.0 * kEndSlack_mm ||
           face.to_mm < step.to_mm - 10.0 * kEndSlack_mm) {
         continue;
@@ -337,117 +351,6 @@ class Finder {
   std::vector<std::uint32_t> stack_;
 };
 
-/// The shaft's axis as the bore's axis sees it.
-struct RelativeAxis {
-  RelativeAxis(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS)
-      : origin(X_VS * shaft.origin - bore.origin),
-        direction(X_VS.rotation() * shaft.direction),
-        cosine(bore.direction.dot(direction)),
-        sine(bore.direction.cross(direction).norm()),
-        height(bore.direction.dot(origin)),
-        axis(bore.direction) {}
-
-  /// Height of the shaft's place `s` along the bore.
-  double at(double s) const { return height + cosine * s; }
-  /// From the bore's axis to the shaft's at its place `s`.
-  Eigen::Vector3d miss(double s) const {
-    const Eigen::Vector3d p = origin + s * direction;
-    return p - axis.dot(p) * axis;
-  }
-
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-  double cosine;
-  double sine;
-  double height;
-  Eigen::Vector3d axis;
-};
-
-bool in_relief(const AxisProfile& bore, std::span<const ThreadRelief> reliefs, const Stretch& z,
-               double radius) {
-  return std::ranges::any_of(reliefs, [&](const ThreadRelief& relief) {
-    const Eigen::Vector3d start = relief.start - bore.origin;
-    const double cosine = bore.direction.dot(relief.direction);
-    const double h0 = bore.direction.dot(start);
-    const double h1 = h0 + cosine * relief.length_mm;
-    return bore.direction.cross(relief.direction).norm() <= kParallel_rad &&
-           (start - h0 * bore.direction).norm() + radius <= relief.radius_mm + kCoincident_mm &&
-           z.from_mm >= std::min(h0, h1) - kCoincident_mm &&
-           z.to_mm <= std::max(h0, h1) + kCoincident_mm;
-  });
-}
-
-/// Heights along the bore that a step of the shaft reaches, on its way of `travel_mm`.
-Stretch reach_of(const RelativeAxis& axis, const ProfileStep& a, double travel_mm) {
-  const auto [z0, z1] = std::minmax({axis.at(a.from_mm), axis.at(a.to_mm)});
-  const double tilt = a.radius_mm * axis.sine;
-  return {z0 + std::min(travel_mm, 0.0) - tilt, z1 + std::max(travel_mm, 0.0) + tilt};
-}
-
-/// Distance of two steps that share no height: `both` is what lies between them, turned round.
-double end_gap(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b,
-               const Stretch& both) {
-  const double axial = both.from_mm - both.to_mm;
-  const double miss = std::max(axis.miss(a.from_mm).norm(), axis.miss(a.to_mm).norm());
-  const double radial = b.radius_mm - a.radius_mm - miss;
-  return radial > 0.0 ? std::hypot(axial, radial) : axial;
-}
-
-/// What two steps leave between them over the heights that they share.
-struct SideGap {
-  double gap_mm = kInfinity;                       ///< negative: the shaft passes the bore's radius
-  double height_mm = 0.0;                          ///< where that is, along the bore
-  Eigen::Vector3d wall = Eigen::Vector3d::Zero();  ///< from the bore's axis to its wall there
-};
-
-SideGap side_gap(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b,
-                 const Stretch& both, double travel_mm) {
-  // Places of the shaft's axis that this stretch of the bore can see.
-  const double tilt = a.radius_mm * axis.sine;
-  const double low = (both.from_mm - std::max(travel_mm, 0.0) - tilt - axis.height) / axis.cosine;
-  const double high = (both.to_mm - std::min(travel_mm, 0.0) + tilt - axis.height) / axis.cosine;
-  const double s0 = std::max(std::min(low, high), a.from_mm);
-  const double s1 = std::min(std::max(low, high), a.to_mm);
-  const Eigen::Vector3d miss0 = axis.miss(s0);
-  const Eigen::Vector3d miss1 = axis.miss(s1);
-  const bool is_at_s0 = miss0.squaredNorm() >= miss1.squaredNorm();
-  const Eigen::Vector3d& miss = is_at_s0 ? miss0 : miss1;
-  const double miss_mm = miss.norm();
-  SideGap result;
-  result.gap_mm = b.radius_mm - a.radius_mm - miss_mm;
-  result.wall = b.radius_mm * (miss_mm > kEndSlack_mm ? Eigen::Vector3d(miss / miss_mm)
-                                                      : axis.axis.unitOrthogonal());
-  result.height_mm = std::clamp(axis.at(is_at_s0 ? s0 : s1), both.from_mm, both.to_mm);
-  return result;
-}
-
-/// Heights at which the shaft passes the bore's radius. A ball of the tolerance's diameter in both
-/// bodies needs that over its own height, and by its diameter where its middle is.
-class Overlap {
- public:
-  explicit Overlap(double tolerance_mm) : tolerance_mm_(tolerance_mm) {}
-
-  /// Adds a stretch; ascending.
-  void add(const Stretch& stretch, double by_mm) {
-    if (stretch.from_mm > run_.to_mm + kEndSlack_mm) {
-      run_.from_mm = stretch.from_mm;
-      is_deep_ = false;
-    }
-    run_.from_mm = std::min(run_.from_mm, stretch.from_mm);
-    run_.to_mm = std::max(run_.to_mm, stretch.to_mm);
-    is_deep_ = is_deep_ || by_mm >= tolerance_mm_;
-    if (is_deep_ && run_.to_mm - run_.from_mm >= tolerance_mm_) is_free_ = false;
-  }
-
-  bool is_free() const { return is_free_; }
-
- private:
-  double tolerance_mm_;
-  Stretch run_{0.0, -kInfinity};
-  bool is_deep_ = false;
-  bool is_free_ = true;
-};
-
 }  // namespace
 
 std::size_t AxisProfiles::memory_bytes() const {
@@ -462,44 +365,6 @@ std::size_t AxisProfiles::memory_bytes() const {
 
 AxisProfiles find_axis_profiles(const CollisionModel& model) {
   return Finder(model).find();
-}
-
-Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, double tolerance_mm,
-        std::span<const ThreadRelief> reliefs_V, double travel_mm) {
-  const RelativeAxis axis(shaft, bore, X_VS);
-  Fit result;
-  if (axis.sine > kMaxTilt) return result;
-  const bool turned = axis.cosine < 0.0;
-  double least_gap = kInfinity;
-  SideGap least_side;
-  Overlap overlap(tolerance_mm);
-  const std::size_t count = shaft.steps.size();
-  for (std::size_t n = 0; n < count; ++n) {
-    const ProfileStep& a = shaft.steps[turned ? count - 1 - n : n];
-    const Stretch reach = reach_of(axis, a, travel_mm);
-    for (const ProfileStep& b : bore.steps) {
-      const Stretch both{std::max(reach.from_mm, b.from_mm), std::min(reach.to_mm, b.to_mm)};
-      if (both.from_mm >= both.to_mm) {
-        least_gap = std::min(least_gap, end_gap(axis, a, b, both));
-        continue;
-      }
-      const SideGap side = side_gap(axis, a, b, both, travel_mm);
-      if (side.gap_mm < least_side.gap_mm) {
-        least_side = side;
-        result.gap_is_met = a.is_round && b.is_round;
-      }
-      if (side.gap_mm < 0.0 && !in_relief(bore, reliefs_V, both, b.radius_mm - side.gap_mm)) {
-        overlap.add(both, -side.gap_mm);
-      }
-    }
-  }
-  result.is_free = overlap.is_free() && shaft.steps.size() * bore.steps.size() > 0;
-  result.gap_mm = std::min(least_gap, least_side.gap_mm);
-  result.gap_is_met = result.gap_is_met && least_side.gap_mm <= least_gap;
-  if (std::isfinite(least_side.gap_mm)) {
-    result.place_V = bore.origin + least_side.height_mm * axis.axis + least_side.wall;
-  }
-  return result;
 }
 
 }  // namespace dowel

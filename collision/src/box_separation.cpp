@@ -68,6 +68,10 @@ BoxSeparation separate(const Obb& a, const Obb& b, double margin_mm, int hint) {
   return {};
 }
 
+double gap_along(const Obb& a, const Obb& b, int plane) {
+  return RelativeBoxes(a, b).gap(plane);
+}
+
 BoxSeparation separate_brute_force(const Obb& a, const Obb& b, double margin_mm) {
   const auto corners_a = a.corners();
   const auto corners_b = b.corners();

@@ -48,11 +48,15 @@ bool on_face_side(const Face& beyond, EdgeShape shape, const Eigen::Vector3d& c)
   return shape == EdgeShape::Convex ? distance <= 0.0 : distance >= 0.0;
 }
 
+/// In-plane distance of `c` from edge `i` times the edge's length, positive outside the triangle.
+double beyond_edge_by_length(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
+  return edge.cross(t.normal).dot(c - t.corners[i]);
+}
+
 /// In-plane distance of `c` from edge `i`, positive outside the triangle.
 double beyond_edge(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d& a = t.corners[i];
-  const Eigen::Vector3d along = (t.corners[(i + 1) % 3] - a).normalized();
-  return along.cross(t.normal).dot(c - a);
+  return beyond_edge_by_length(t, i, c) / (t.corners[(i + 1) % 3] - t.corners[i]).norm();
 }
 
 /// Whether `c` is seen from edge `i` at a right angle: the rim's arc over a chord lies there and
@@ -68,8 +72,9 @@ bool is_over_chord(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d&
 bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
                      const Eigen::Vector3d& c) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const double beyond = beyond_edge(t, i, c);
-    if (beyond <= 0.0 || beyond > t.slack_mm || !is_chord(model, t, i)) continue;
+    if (!is_chord(model, t, i)) continue;
+    // Not inside by the same sign as in `is_inside`: no place is between the two.
+    if (beyond_edge_by_length(t, i, c) <= 0.0 || beyond_edge(t, i, c) > t.slack_mm) continue;
     if (is_over_chord(t, i, c) && on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
       return true;
     }
@@ -89,7 +94,8 @@ bool overhangs_rim(const CollisionModel& model, std::uint32_t index, const Eigen
 }
 
 bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& c) {
-  return beyond_edge(t, 0, c) <= 0.0 && beyond_edge(t, 1, c) <= 0.0 && beyond_edge(t, 2, c) <= 0.0;
+  return beyond_edge_by_length(t, 0, c) <= 0.0 && beyond_edge_by_length(t, 1, c) <= 0.0 &&
+         beyond_edge_by_length(t, 2, c) <= 0.0;
 }
 
 /// Whether the foot `c` on a curved surface is on the facet's side of it and about its height.

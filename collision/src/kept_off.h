@@ -18,9 +18,11 @@ class KeptOff {
   /// `least_height_mm(plane)`: lower bound of the other body's height before a plane of `body`.
   template <class LeastHeight>
   KeptOff(const CollisionModel& body, double tolerance_mm, const LeastHeight& least_height_mm) {
-    for (const PlaneSurface& plane : body.main_planes()) {
+    for (const SeatPlane& seat : body.seat_planes()) {
       if (count_ == planes_.size()) break;
-      if (least_height_mm(plane) > -tolerance_mm * (1.0 - kSafety)) planes_[count_++] = &plane;
+      if (least_height_mm(seat.plane) > -tolerance_mm * (1.0 - kSafety)) {
+        planes_[count_++] = &seat.plane;
+      }
     }
   }
 

@@ -126,6 +126,11 @@ bool is_beyond_an_edge(const ModelTriangle& t, std::span<const Eigen::Vector3d> 
   return false;
 }
 
+bool are_one(const PlaneSurface& a, const PlaneSurface& b) {
+  return a.normal.dot(b.normal) > 0.0 && a.normal.cross(b.normal).norm() <= kParallel_rad &&
+         std::abs(a.normal.dot(b.origin - a.origin)) <= kSamePlane_mm;
+}
+
 bool overlap(const BvhNode& node, const Aabb& box) {
   return (node.min.array() <= box.max.array()).all() && (box.min.array() <= node.max.array()).all();
 }
@@ -139,7 +144,7 @@ CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
   build_tree(build_triangles(hole_faces));
   find_overhangs();
   find_inner_points();
-  find_main_planes();
+  find_seat_planes();
   profiles_ = find_axis_profiles(*this);
 }
 
@@ -294,8 +299,8 @@ void CollisionModel::find_inner_points() {
   }
 }
 
-void CollisionModel::find_main_planes() {
-  constexpr std::size_t kMainPlanes = 16;
+void CollisionModel::find_seat_planes() {
+  constexpr std::size_t kSeatPlanes = 16;
   struct Entry {
     PlaneSurface plane;
     double area_mm2 = 0.0;
@@ -304,11 +309,8 @@ void CollisionModel::find_main_planes() {
   for (const Face& face : solid_->faces) {
     const auto* plane = std::get_if<PlaneSurface>(&face.surface);
     if (plane == nullptr) continue;
-    const auto known = std::ranges::find_if(entries, [&](const Entry& entry) {
-      return entry.plane.normal.dot(plane->normal) > 0.0 &&
-             entry.plane.normal.cross(plane->normal).norm() <= kParallel_rad &&
-             std::abs(entry.plane.normal.dot(plane->origin - entry.plane.origin)) <= kSamePlane_mm;
-    });
+    const auto known = std::ranges::find_if(
+        entries, [&](const Entry& entry) { return are_one(entry.plane, *plane); });
     if (known == entries.end()) {
       entries.push_back({*plane, face.area_mm2});
     } else {
@@ -316,8 +318,37 @@ void CollisionModel::find_main_planes() {
     }
   }
   std::ranges::stable_sort(entries, std::ranges::greater(), &Entry::area_mm2);
-  if (entries.size() > kMainPlanes) entries.resize(kMainPlanes);
-  for (const Entry& entry : entries) main_planes_.push_back(entry.plane);
+  if (entries.size() > kSeatPlanes) entries.resize(kSeatPlanes);
+  for (const Entry& entry : entries) {
+    seat_planes_.push_back({entry.plane, 0, 0});
+    find_seats(seat_planes_.back());
+  }
+}
+
+void CollisionModel::find_seats(SeatPlane& plane) {
+  constexpr std::size_t kSeats = 8;
+  std::vector<Seat> places;
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    const ModelTriangle& t = triangles_[i];
+    const auto* surface = std::get_if<PlaneSurface>(&face(t.face).surface);
+    if (surface == nullptr || !are_one(*surface, plane.plane)) continue;
+    const Eigen::Vector3d center = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
+    const FacePoint near = nearest_on_patch(*this, i, center);
+    if (near.place != FacePoint::Place::Face || !std::isfinite(near.distance_squared_mm2)) continue;
+    places.push_back({near.point, i});
+  }
+  // The farthest from all that are taken is taken next.
+  plane.first = static_cast<std::uint32_t>(seats_.size());
+  std::vector<double> distance(places.size(), std::numeric_limits<double>::infinity());
+  while (plane.count < std::min(kSeats, places.size())) {
+    const auto farthest = std::ranges::max_element(distance) - distance.begin();
+    const Seat& taken = places[static_cast<std::size_t>(farthest)];
+    seats_.push_back(taken);
+    ++plane.count;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      distance[i] = std::min(distance[i], (places[i].point - taken.point).squaredNorm());
+    }
+  }
 }
 
 std::size_t CollisionModel::memory_bytes() const {
@@ -327,7 +358,8 @@ std::size_t CollisionModel::memory_bytes() const {
          overhangs_.capacity() * sizeof(Chord) +
          overhang_begin_.capacity() * sizeof(overhang_begin_[0]) +
          inner_points_.capacity() * sizeof(InnerPoint) +
-         main_planes_.capacity() * sizeof(PlaneSurface) + profiles_.memory_bytes();
+         seat_planes_.capacity() * sizeof(SeatPlane) + seats_.capacity() * sizeof(Seat) +
+         profiles_.memory_bytes();
 }
 
 }  // namespace dowel

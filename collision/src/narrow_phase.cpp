@@ -35,6 +35,10 @@ constexpr double kProjectionGain = 1.0e-3;
 /// Cosine above which two facets are parallel enough to look for what they have in common.
 constexpr double kOpposite = 0.999;
 
+/// Seats are tried on planes that are this many tolerances apart at their origins at most: planes
+/// that are not quite parallel may be closer elsewhere.
+constexpr double kSeatApart = 4.0;
+
 /// Slack of the cones of normals for that angle and for single precision.
 constexpr double kConeSlack = 0.06;
 
@@ -96,16 +100,31 @@ class Judge {
         counters_(counters),
         erosion_mm_(0.5 * options.tolerance_mm) {}
 
+  /// What was found out at the last pose, tested at this one. False where that decides nothing.
+  bool recall() {
+    if (knows_ball()) return true;
+    bool is_free = false;
+    if (memory_.shaft != PairMemory::kNone) {
+      is_free = take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore);
+      if (is_decided_) return true;
+    }
+    if (memory_.contact_a == PairMemory::kNone) return false;
+    return (is_free || are_still_shallow()) && still_touches();
+  }
+
   PairVerdict decide() {
-    if (knows_ball()) return result_;
-    const bool is_free = boxes_are_shallow() || shaft_fits();
+    const bool are_shallow = boxes_are_shallow();
+    if (are_shallow && still_touches()) return result_;
+    const bool is_free = shaft_fits() || are_shallow;
     if (is_decided_) return result_;
-    if (!still_touches()) look_for_contact();
+    if (are_shallow || !still_touches()) look_for_contact();
     if (is_free) return result_;
     if (is_suspect_) look_for_interference();
     if (result_.verdict != Verdict::Interference) look_for_containment();
     return result_;
   }
+
+  const PairVerdict& result() const { return result_; }
 
   /// The same by looking at all pairs of facets, without knowing of anything that forbids one or
   /// the other.
@@ -133,6 +152,12 @@ class Judge {
     const BoxSeparation boxes = separate(obb_a_B, pair_.obb_b, overlap, memory_.shallow_plane);
     memory_.shallow_plane = static_cast<std::int8_t>(boxes.plane);
     return boxes.plane >= 0;
+  }
+
+  bool are_still_shallow() const {
+    return memory_.shallow_plane >= 0 &&
+           gap_along(transformed(pair_.X_BA, pair_.obb_a), pair_.obb_b, memory_.shallow_plane) >
+               -options_.tolerance_mm * (1.0 - kSafety);
   }
 
   /// Looks for a shaft of one body in a bore of the other. May decide the pair.
@@ -172,7 +197,7 @@ class Judge {
     const double middle = 0.5 * (bore.steps.front().from_mm + bore.steps.back().to_mm);
     const Eigen::Vector3d offset = bore.origin + middle * bore.direction - origin;
     double radius = 0.0;
-    for (const ProfileStep& step : bore.steps) radius = std::max(radius, step.radius_mm);
+    for (const ProfileStep& step : bore.steps) radius = std::max(radius, step.most_radius_mm());
     return (offset - direction.dot(offset) * direction).squaredNorm() <= radius * radius;
   }
 
@@ -206,21 +231,71 @@ class Judge {
     result_.witness_W = place_B;
   }
 
+  /// Contact of facets `i` and `j`, at a place of either's face.
+  void touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
+             const Eigen::Vector3d& on_b) {
+    touch((on_a_B - on_b).norm(), 0.5 * (on_a_B + on_b));
+    memory_.contact_a = i;
+    memory_.contact_b = j;
+    memory_.has_contact_place = true;
+    memory_.contact_A = X_AB_ * on_a_B;
+    memory_.contact_B = on_b;
+  }
+
+  /// Whether the facets that were in contact still are: at the same place of either, if not, at
+  /// another one, or the same place of a body at another facet of the other one.
   bool still_touches() {
     if (memory_.contact_a == PairMemory::kNone) return false;
-    const PlacedTriangle a_B = placement_ * pair_.a.triangles()[memory_.contact_a];
-    double ignored = 0.0;
-    if (faces_lie_on_each_other(memory_.contact_a, a_B, memory_.contact_b) ||
-        touches(memory_.contact_a, a_B, memory_.contact_b, ignored)) {
+    const std::uint32_t i = memory_.contact_a;
+    const std::uint32_t j = memory_.contact_b;
+    const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
+    const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
+    if (memory_.has_contact_place && (touches_at(i, on_a_B, j) || touched_at(i, on_b_A, j))) {
       return true;
+    }
+    const PlacedTriangle a_B = placement_ * pair_.a.triangles()[i];
+    if (faces_lie_on_each_other(i, a_B, j)) return true;
+    if (double ignored = 0.0; !memory_.has_contact_place && touches(i, a_B, j, ignored))
+      return true;
+    if (memory_.has_contact_place && options_.holes == HoleMode::Exact) {
+      const double reach_mm = options_.tolerance_mm;
+      if (const auto near = pair_.b.nearest_within(on_a_B, reach_mm)) {
+        if (touches_at(i, on_a_B, near->triangle)) return true;
+      }
+      if (const auto near = pair_.a.nearest_within(on_b_A, reach_mm)) {
+        if (touched_at(near->triangle, on_b_A, j)) return true;
+      }
     }
     memory_.contact_a = PairMemory::kNone;
     return false;
   }
 
+  /// Whether a place of A's facet `i` is within the tolerance of what facet `j` of B stands for.
+  bool touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j) {
+    ++counters_.triangle_tests;
+    const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B);
+    if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+    note_method(i, j);
+    is_suspect_ = true;
+    touch(i, on_a_B, j, near.point);
+    return true;
+  }
+
+  /// The same for a place of B.
+  bool touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j) {
+    ++counters_.triangle_tests;
+    const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A);
+    if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+    note_method(i, j);
+    is_suspect_ = true;
+    touch(i, placement_ * near.point, j, pair_.X_BA * on_b_A);
+    return true;
+  }
+
   /// Looks for facets within the tolerance: first, at little cost, flat ones that face each other,
   /// as in most contacts, then all.
   void look_for_contact() {
+    if (seat_touches()) return;
     visit_near([&](const BvhNode& a, const BvhNode& b) { return may_face(a, b); },
                [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
                  return faces_lie_on_each_other(i, a_B, j);
@@ -235,6 +310,31 @@ class Judge {
     }
   }
 
+  /// Whether a seat of one body is in contact on a plane of the other one.
+  bool seat_touches() {
+    if (options_.holes == HoleMode::Paper) return false;
+    for (const SeatPlane& a : pair_.a.seat_planes()) {
+      const Eigen::Vector3d normal_B = placement_.rotation * a.plane.normal;
+      const Eigen::Vector3d origin_B = placement_ * a.plane.origin;
+      for (const SeatPlane& b : pair_.b.seat_planes()) {
+        if (normal_B.dot(b.plane.normal) > -kOpposite) continue;
+        const double apart = std::abs(b.plane.normal.dot(origin_B - b.plane.origin));
+        if (apart > kSeatApart * options_.tolerance_mm) continue;
+        for (const Seat& seat : pair_.a.seats(a)) {
+          const Eigen::Vector3d on_a_B = placement_ * seat.point;
+          const auto near = pair_.b.nearest_within(on_a_B, options_.tolerance_mm);
+          if (near && touches_at(seat.triangle, on_a_B, near->triangle)) return true;
+        }
+        for (const Seat& seat : pair_.b.seats(b)) {
+          const Eigen::Vector3d on_b_A = X_AB_ * seat.point;
+          const auto near = pair_.a.nearest_within(on_b_A, options_.tolerance_mm);
+          if (near && touched_at(near->triangle, on_b_A, seat.triangle)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
   /// Whether facets of two nodes may face each other.
   bool may_face(const BvhNode& a, const BvhNode& b) const {
     const Eigen::Vector3d normal_B = placement_.rotation * a.normal.cast<double>();
@@ -244,8 +344,8 @@ class Judge {
   }
 
   /// Calls `found(i, facet i of A in B, j)` for facets of wanted nodes whose boxes are within the
-  /// tolerance, until it returns true; what it was true for is remembered as in contact. Returns a
-  /// lower bound of the distance of those that were left out.
+  /// tolerance, until it returns true. Returns a lower bound of the distance of those that were
+  /// left out.
   template <class WantedNodes, class Found>
   double visit_near(const WantedNodes& wanted_nodes, const Found& found) {
     double left_out = std::numeric_limits<double>::infinity();
@@ -260,10 +360,7 @@ class Judge {
               pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, left_out,
               [this](const ModelTriangle& t) { return takes_part(t); },
               [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                if (!found(i, a_B, j)) return true;
-                memory_.contact_a = i;
-                memory_.contact_b = j;
-                return false;
+                return !found(i, a_B, j);
               });
         });
     return left_out;
@@ -298,7 +395,7 @@ class Judge {
     }
     const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
     if (!middle || !is_between_faces(i, j, *middle)) return false;
-    note_method(a, b, a.slack_mm + b.slack_mm);
+    note_method(i, j);
     is_suspect_ = true;
     return true;
   }
@@ -320,7 +417,7 @@ class Judge {
       apart = std::min(apart, gap - slack);
       return false;
     }
-    note_method(a, b, slack);
+    note_method(i, j);
     if (const double gap = std::max(beyond_edges(b.corners, b.normal, a_B.corners_B),
                                     beyond_edges(a_B.corners_B, a_B.normal_B, b.corners));
         gap > margin) {
@@ -335,13 +432,16 @@ class Judge {
     }
     is_suspect_ = true;
     if (slack == 0.0) {
-      touch(gap, 0.5 * (closest.on_a + closest.on_b));
+      touch(i, closest.on_a, j, closest.on_b);
       return true;
     }
     if (is_between_faces(i, j, closest.on_b)) return true;
     const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
     if (const auto place = find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
       touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
+      memory_.contact_a = i;
+      memory_.contact_b = j;
+      memory_.has_contact_place = false;
       return true;
     }
     apart = options_.tolerance_mm;
@@ -360,7 +460,7 @@ class Judge {
       on_b = near_b.point;
       const double gap = std::sqrt(near_b.distance_squared_mm2);
       if (gap <= options_.tolerance_mm) {
-        touch(gap, 0.5 * (on_a + on_b));
+        touch(i, on_a, j, on_b);
         return true;
       }
       if (previous - gap < kProjectionGain * options_.tolerance_mm) return false;
@@ -445,7 +545,7 @@ class Judge {
         box_gap(a_B.corners_B, b.corners) > margin) {
       return false;
     }
-    note_method(a, b, slack);
+    note_method(i, j);
     const double reach = reach_mm(a, b);
     const auto crossing =
         crossing_segment(shifted(a_B.corners_B, -erosion_mm_ * a_B.normal_B), a_B.normal_B,
@@ -475,9 +575,11 @@ class Judge {
     return kReachTolerances * options_.tolerance_mm + length_mm;
   }
 
-  void note_method(const ModelTriangle& a, const ModelTriangle& b, double slack) {
+  void note_method(std::uint32_t i, std::uint32_t j) {
+    const ModelTriangle& a = pair_.a.triangles()[i];
+    const ModelTriangle& b = pair_.b.triangles()[j];
     if (result_.method == Method::Boxes) result_.method = Method::Facets;
-    if (slack > 0.0) result_.method = Method::Exact;
+    if (a.slack_mm + b.slack_mm > 0.0) result_.method = Method::Exact;
     const Face& face_a = pair_.a.face(a.face);
     const Face& face_b = pair_.b.face(b.face);
     const double unknown = (is_exact(face_a) ? 0.0 : face_a.facet_error_mm) +
@@ -557,6 +659,20 @@ double gap_below(double limit_mm, const ModelTriangle& a, const PlacedTriangle& 
 
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters) {
+  Judge judge(pair, options, memory, scratch, counters);
+  return judge.recall() ? judge.result() : judge_afresh(pair, options, memory, scratch, counters);
+}
+
+std::optional<PairVerdict> recall(const ModelPair& pair, const QueryOptions& options,
+                                  PairMemory& memory, NarrowScratch& scratch,
+                                  QueryCounters& counters) {
+  Judge judge(pair, options, memory, scratch, counters);
+  if (!judge.recall()) return std::nullopt;
+  return judge.result();
+}
+
+PairVerdict judge_afresh(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+                         NarrowScratch& scratch, QueryCounters& counters) {
   return Judge(pair, options, memory, scratch, counters).decide();
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,9 +51,13 @@ struct PairMemory {
   std::uint32_t shaft = kNone;
   std::uint32_t bore = kNone;
 
-  /// Facets that were in contact.
+  /// Facets that were in contact, and a place on the exact face of each where they were, in the
+  /// frame of its body.
   std::uint32_t contact_a = kNone;
   std::uint32_t contact_b = kNone;
+  bool has_contact_place = false;
+  Eigen::Vector3d contact_A = Eigen::Vector3d::Zero();
+  Eigen::Vector3d contact_B = Eigen::Vector3d::Zero();
 
   /// Facets whose crossing led to interference.
   std::uint32_t crossing_a = kNone;
@@ -63,6 +68,8 @@ struct PairMemory {
   Eigen::Vector3d ball_B = Eigen::Vector3d::Zero();
   double ball_depth_a_mm = 0.0;
   double ball_depth_b_mm = 0.0;
+
+  bool is_empty() const { return shaft == kNone && contact_a == kNone && ball_depth_a_mm <= 0.0; }
 };
 
 /// The verdict, with witness in the frame of B.
@@ -76,6 +83,16 @@ struct PairMemory {
 /// found by points stored deep inside each component.
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters);
+
+/// What is remembered, tested at the new pose: the verdict where that alone gives it, at a small
+/// part of the cost, else nothing.
+std::optional<PairVerdict> recall(const ModelPair& pair, const QueryOptions& options,
+                                  PairMemory& memory, NarrowScratch& scratch,
+                                  QueryCounters& counters);
+
+/// The verdict, after `recall` gave none.
+PairVerdict judge_afresh(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+                         NarrowScratch& scratch, QueryCounters& counters);
 
 /// The same by looking at all pairs of facets. Reference for tests.
 PairVerdict judge_by_brute_force(const ModelPair& pair, const QueryOptions& options,

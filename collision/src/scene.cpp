@@ -211,6 +211,35 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   mover.clear_until = 0.0;
 }
 
+PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, const Obb& obb_W,
+                                                  Candidate& candidate,
+                                                  const QueryOptions& options) {
+  ++counters.box_tests;
+  const auto in_world = [&](PairVerdict verdict) {
+    verdict.witness_W = bodies[candidate.id.value].X_WB * verdict.witness_W;
+    return verdict;
+  };
+  // What met last time is likely to meet in the same way, whatever their boxes do.
+  const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
+  if (met) {
+    const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
+    if (const auto known = recall(placed.pair, options, candidate.memory, scratch, counters)) {
+      return in_world(*known);
+    }
+  }
+  const BoxSeparation boxes =
+      separate(obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
+  candidate.plane = static_cast<std::int8_t>(boxes.plane);
+  if (boxes.plane >= 0) {
+    PairVerdict clear;
+    clear.gap_mm = boxes.gap_mm;
+    return clear;
+  }
+  const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
+  const auto judged = met ? judge_afresh : judge;
+  return in_world(judged(placed.pair, options, candidate.memory, scratch, counters));
+}
+
 bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
   if (mover.way_mm < mover.clear_until) return true;
   const Obb obb_W = transformed(mover.X_WB, body(mover.id).element->obb());
@@ -225,25 +254,17 @@ bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }
-    ++counters.box_tests;
-    const BoxSeparation boxes =
-        separate(obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
-    candidate.plane = static_cast<std::int8_t>(boxes.plane);
-    double gap_mm = boxes.gap_mm;
-    if (boxes.plane < 0) {
-      const PairVerdict verdict =
-          judge_bodies(mover.id, mover.X_WB, candidate.id, options, candidate.memory);
-      gap_mm = verdict.gap_mm;
-      if (verdict.verdict != Verdict::Clear) {
-        clear_until = 0.0;
-        if (options.first_only && verdict.verdict == Verdict::Interference) verdicts.clear();
-        verdicts.push_back({mover.id, candidate.id, verdict});
-        if (options.first_only && verdict.verdict == Verdict::Interference) return false;
-        continue;
-      }
+    const PairVerdict verdict = judge_candidate(mover, obb_W, candidate, options);
+    if (verdict.verdict == Verdict::Clear) {
+      candidate.clear_until = mover.way_mm + verdict.gap_mm - options.tolerance_mm;
+      clear_until = std::min(clear_until, candidate.clear_until);
+      continue;
     }
-    candidate.clear_until = mover.way_mm + gap_mm - options.tolerance_mm;
-    clear_until = std::min(clear_until, candidate.clear_until);
+    clear_until = 0.0;
+    const bool is_last = options.first_only && verdict.verdict == Verdict::Interference;
+    if (is_last) verdicts.clear();
+    verdicts.push_back({mover.id, candidate.id, verdict});
+    if (is_last) return false;
   }
   mover.clear_until = clear_until;
   return true;

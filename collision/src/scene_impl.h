@@ -92,6 +92,10 @@ struct CollisionScene::Impl {
   /// Finds the mover's candidates anew, with room for the moves to come.
   void find_candidates(Mover& mover, double step_mm);
 
+  /// Verdict on a mover whose box is `obb_W` and one of its candidates; witness in the world.
+  PairVerdict judge_candidate(const Mover& mover, const Obb& obb_W, Candidate& candidate,
+                              const QueryOptions& options);
+
   /// Appends the verdicts of one mover to `verdicts`; false once `first_only` ends the query.
   bool check_mover(Mover& mover, const QueryOptions& options);
 

@@ -26,7 +26,7 @@ std::vector<std::array<double, 3>> steps_along_z(const AxisProfile& profile) {
   for (const dowel::ProfileStep& step : profile.steps) {
     const double z0 = (profile.origin + step.from_mm * profile.direction).z();
     const double z1 = (profile.origin + step.to_mm * profile.direction).z();
-    result.push_back({std::min(z0, z1), std::max(z0, z1), step.radius_mm});
+    result.push_back({std::min(z0, z1), std::max(z0, z1), step.most_radius_mm()});
   }
   std::ranges::sort(result);
   return result;
@@ -87,7 +87,7 @@ TEST_CASE("a fit is free exactly where the cylinders leave room", "[property]") 
     const double offset = random.uniform(0.0, 1.5) * clearance;
     const double radius = 6.0 - clearance;
     AxisProfile shaft;
-    shaft.steps = {{0.0, 30.0, radius, true}, {30.0, 36.0, 9.0, true}};
+    shaft.steps = {{0.0, 30.0, radius, radius, true}, {30.0, 36.0, 9.0, 9.0, true}};
     const double direction = random.uniform(0.0, 7.0);
     const double turn = random.uniform(0.0, 7.0);
     // The head is seated on the plate or above it.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -14,13 +15,22 @@ namespace dowel {
 class CollisionModel;
 struct ThreadRelief;
 
-/// A stretch of an axis and a radius about it.
+/// A stretch of an axis and a radius about it, which changes evenly from end to end: a chamfer's.
 struct ProfileStep {
   double from_mm = 0.0;  ///< along the axis, from < to
   double to_mm = 0.0;
-  double radius_mm = 0.0;
+  double from_radius_mm = 0.0;
+  double to_radius_mm = 0.0;
   /// A cylinder about the axis goes all the way round at this radius, over the whole stretch.
   bool is_round = false;
+
+  double most_radius_mm() const { return std::max(from_radius_mm, to_radius_mm); }
+  double least_radius_mm() const { return std::min(from_radius_mm, to_radius_mm); }
+  /// Change of the radius with the height.
+  double slope() const { return (to_radius_mm - from_radius_mm) / (to_mm - from_mm); }
+  double radius_at(double height_mm) const {
+    return from_radius_mm + slope() * (height_mm - from_mm);
+  }
 };
 
 /// A body as one of its own axes sees it, in steps along that axis. Of a shaft: a radius that no
@@ -61,8 +71,8 @@ struct Fit {
 ///
 /// A point of the shaft's body at radius r about the shaft's axis has a radius of at most r plus
 /// the distance of the axes there about the bore's axis, and that distance is largest at one of the
-/// ends of a stretch: so the steps are compared without sampling, exactly for parallel axes and to
-/// second order in the tilt otherwise.
+/// ends of a stretch: so the steps are compared without sampling, exactly for parallel axes and
+/// cylinders, to second order in the tilt otherwise.
 Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, double tolerance_mm,
         std::span<const ThreadRelief> reliefs_V, double travel_mm = 0.0);
 

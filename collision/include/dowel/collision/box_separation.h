@@ -23,6 +23,10 @@ struct BoxSeparation {
 /// transformed; each box's reach along a normal is computed from its axes (Gottschalk 1996).
 BoxSeparation separate(const Obb& a, const Obb& b, double margin_mm, int hint = -1);
 
+/// Distance of the boxes along the normal of one of the planes (numbered as in `BoxSeparation`);
+/// negative where they overlap along it, -infinity where edges are parallel and give no plane.
+double gap_along(const Obb& a, const Obb& b, int plane);
+
 /// The same question answered from the 2 x 8 corners and all 15 planes: the plane with the largest
 /// gap. Reference for tests.
 BoxSeparation separate_brute_force(const Obb& a, const Obb& b, double margin_mm);

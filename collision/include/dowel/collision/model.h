@@ -53,6 +53,19 @@ struct Chord {
   std::uint32_t edge = 0;
 };
 
+/// A place inside a planar face, and a facet that it is on: where it is in contact is asked first.
+struct Seat {
+  Eigen::Vector3d point;
+  std::uint32_t triangle = 0;
+};
+
+/// A plane of the largest planar faces, and its seats: spread over all faces in it.
+struct SeatPlane {
+  PlaneSurface plane;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
 /// Place on the exact boundary that is nearest to some point.
 struct NearestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -119,7 +132,10 @@ class CollisionModel {
   const AxisProfiles& profiles() const noexcept { return profiles_; }
 
   /// The planes of the largest planar faces, each once, the largest first.
-  std::span<const PlaneSurface> main_planes() const noexcept { return main_planes_; }
+  std::span<const SeatPlane> seat_planes() const noexcept { return seat_planes_; }
+  std::span<const Seat> seats(const SeatPlane& plane) const noexcept {
+    return std::span(seats_).subspan(plane.first, plane.count);
+  }
 
   /// Largest slack of the triangles, and largest error of faces known by their facets alone.
   double max_slack_mm() const noexcept { return max_slack_mm_; }
@@ -136,7 +152,8 @@ class CollisionModel {
   void find_inner_points();
   /// Away from the nearest place of the boundary, for as long as that makes it deeper.
   InnerPoint pushed_inwards(InnerPoint from, Eigen::Vector3d boundary, double step_mm) const;
-  void find_main_planes();
+  void find_seat_planes();
+  void find_seats(SeatPlane& plane);
 
   std::shared_ptr<const FacetedSolid> solid_;
   std::vector<BvhNode> nodes_;
@@ -145,7 +162,8 @@ class CollisionModel {
   std::vector<Chord> overhangs_;             // by triangle, from overhang_begin_ on
   std::vector<std::uint32_t> overhang_begin_;
   std::vector<InnerPoint> inner_points_;
-  std::vector<PlaneSurface> main_planes_;
+  std::vector<SeatPlane> seat_planes_;
+  std::vector<Seat> seats_;
   AxisProfiles profiles_;
   double max_slack_mm_ = 0.0;
   double max_unknown_mm_ = 0.0;
