@@ -93,6 +93,10 @@ struct Best {
 
   Best() { place.distance_squared_mm2 = std::numeric_limits<double>::infinity(); }
   void look_at(const CollisionModel& model, std::uint32_t t, const Eigen::Vector3d& p) {
+    const ModelTriangle& facet = model.triangles()[t];
+    const double height = facet.normal.dot(p - facet.corners[0]);
+    const double above = std::max(std::abs(height) - facet.normal_slack_mm, 0.0);
+    if (above * above > place.distance_squared_mm2) return;
     const FacePoint candidate = nearest_on_patch(model, t, p);
     if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
       place = candidate;

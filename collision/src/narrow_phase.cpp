@@ -117,10 +117,18 @@ class Judge {
     if (are_shallow && still_touches()) return result_;
     const bool is_free = shaft_fits() || are_shallow;
     if (is_decided_) return result_;
+    const bool crossed = memory_.crossing_a != PairMemory::kNone;
+    if (!is_free) {
+      // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
+      // before, others are likely to do so now.
+      look_for_containment();
+      if (is_interference()) return result_;
+      if (crossed) look_for_interference();
+      if (is_interference()) return result_;
+      memory_.crossing_a = PairMemory::kNone;
+    }
     if (are_shallow || !still_touches()) look_for_contact();
-    if (is_free) return result_;
-    if (is_suspect_) look_for_interference();
-    if (result_.verdict != Verdict::Interference) look_for_containment();
+    if (!is_free && is_suspect_ && !crossed) look_for_interference();
     return result_;
   }
 
@@ -501,6 +509,8 @@ class Judge {
     result_.witness_W = ball_B;
     return true;
   }
+
+  bool is_interference() const { return result_.verdict == Verdict::Interference; }
 
   void look_for_interference() {
     if (memory_.crossing_a != PairMemory::kNone &&

@@ -25,6 +25,7 @@ constexpr int kDeepenings = 8;
 
 constexpr std::size_t kMaxConstraints = 4;
 constexpr int kRounds = 12;
+constexpr int kCoarseRounds = 1;  // of making a witness deeper for later moves: only where easy
 constexpr int kNewtonSteps = 6;
 
 /// More steps are made for as long as each leaves no more than this of what is missed: two faces
@@ -210,9 +211,10 @@ class Search {
 };
 
 /// Runs rounds of settling and asking from `start` on.
-std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double reach_mm) {
+std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double reach_mm,
+                           int rounds = kRounds) {
   Eigen::Vector3d p = start;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     if (!search.settle(p) || (p - start).norm() > reach_mm || search.in_relief(p)) {
       return std::nullopt;
     }
@@ -287,7 +289,8 @@ Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly) {
       Search search(pair, growth * depth_mm);
       search.add(search.read(Side::A, best.point_B).nearest);
       search.add(search.read(Side::B, best.point_B).nearest);
-      const auto deeper = run(search, best.point_B, 8.0 * growth * depth_mm);
+      const auto deeper =
+          run(search, best.point_B, 8.0 * growth * depth_mm, thoroughly ? kRounds : kCoarseRounds);
       if (!deeper) break;
       best = *deeper;
     }
