@@ -1,0 +1,170 @@
+// The order of questions on one pair, and what forbids interference.
+
+#include "judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dowel/collision/axis_profile.h"
+#include "dowel/collision/box_separation.h"
+#include "exact_face.h"
+
+namespace dowel {
+namespace {
+
+/// A share of the tolerance that certificates keep for rounding.
+constexpr double kSafety = 1.0e-6;
+
+}  // namespace
+
+bool Judge::recall() {
+  if (knows_ball()) return true;
+  bool is_free = false;
+  if (memory_.shaft != PairMemory::kNone) {
+    is_free = take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore);
+    if (is_decided_) return true;
+  }
+  if (memory_.contact_a == PairMemory::kNone) return false;
+  return (is_free || are_still_shallow()) && still_touches();
+}
+
+PairVerdict Judge::decide() {
+  const bool are_shallow = boxes_are_shallow();
+  if (are_shallow && still_touches()) return result_;
+  const bool is_free = shaft_fits() || are_shallow;
+  if (is_decided_) return result_;
+  const bool crossed = memory_.crossing_a != PairMemory::kNone;
+  if (!is_free) {
+    // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
+    // before, others are likely to do so now.
+    look_for_containment();
+    if (is_interference()) return result_;
+    if (crossed) look_for_interference();
+    if (is_interference()) return result_;
+    memory_.crossing_a = PairMemory::kNone;
+  }
+  if (are_shallow || !still_touches()) look_for_contact();
+  if (!is_free && is_suspect_ && !crossed) look_for_interference();
+  return result_;
+}
+
+PairVerdict Judge::decide_by_brute_force() {
+  double apart = std::numeric_limits<double>::infinity();
+  for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+    return !faces_lie_on_each_other(i, a_B, j) && !touches(i, a_B, j, apart);
+  });
+  if (is_suspect_) {
+    for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+      return !crosses(i, a_B, j);
+    });
+  }
+  if (result_.verdict != Verdict::Interference) look_for_containment();
+  if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, options_.tolerance_mm);
+  return result_;
+}
+
+bool Judge::boxes_are_shallow() {
+  const Obb obb_a_B = transformed(pair_.X_BA, pair_.obb_a);
+  const double overlap = -options_.tolerance_mm * (1.0 - kSafety);
+  const BoxSeparation boxes = separate(obb_a_B, pair_.obb_b, overlap, memory_.shallow_plane);
+  memory_.shallow_plane = static_cast<std::int8_t>(boxes.plane);
+  return boxes.plane >= 0;
+}
+
+bool Judge::are_still_shallow() const {
+  return memory_.shallow_plane >= 0 &&
+         gap_along(transformed(pair_.X_BA, pair_.obb_a), pair_.obb_b, memory_.shallow_plane) >
+             -options_.tolerance_mm * (1.0 - kSafety);
+}
+
+bool Judge::shaft_fits() {
+  if (options_.holes == HoleMode::Paper) return false;
+  if (memory_.shaft != PairMemory::kNone &&
+      take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore)) {
+    return true;
+  }
+  memory_.shaft = PairMemory::kNone;
+  for (const bool shaft_is_in_a : {true, false}) {
+    const CollisionModel& with_shaft = shaft_is_in_a ? pair_.a : pair_.b;
+    const CollisionModel& with_bore = shaft_is_in_a ? pair_.b : pair_.a;
+    const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
+    const auto& shafts = with_shaft.profiles().shafts;
+    const auto& bores = with_bore.profiles().bores;
+    for (std::uint32_t s = 0; s < shafts.size(); ++s) {
+      const Eigen::Vector3d origin = X_VS * shafts[s].origin;
+      const Eigen::Vector3d direction = X_VS.rotation() * shafts[s].direction;
+      for (std::uint32_t v = 0; v < bores.size(); ++v) {
+        if (may_hold(origin, direction, bores[v]) && take_fit(shaft_is_in_a, s, v)) {
+          memory_.shaft_is_in_a = shaft_is_in_a;
+          memory_.shaft = s;
+          memory_.bore = v;
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+bool Judge::may_hold(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                     const AxisProfile& bore) {
+  if (std::abs(direction.dot(bore.direction)) < 0.99) return false;
+  const double middle = 0.5 * (bore.steps.front().from_mm + bore.steps.back().to_mm);
+  const Eigen::Vector3d offset = bore.origin + middle * bore.direction - origin;
+  double radius = 0.0;
+  for (const ProfileStep& step : bore.steps) radius = std::max(radius, step.most_radius_mm());
+  return (offset - direction.dot(offset) * direction).squaredNorm() <= radius * radius;
+}
+
+bool Judge::take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
+  const AxisProfile& shaft = (shaft_is_in_a ? pair_.a : pair_.b).profiles().shafts[s];
+  const AxisProfile& bore = (shaft_is_in_a ? pair_.b : pair_.a).profiles().bores[v];
+  // Reliefs are given in B; a shaft of B in a bore of A sees them in A only where there are none.
+  if (!shaft_is_in_a && !pair_.reliefs_B.empty()) return false;
+  const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
+  const Fit fitted = fit(shaft, bore, X_VS, options_.tolerance_mm * (1.0 - kSafety),
+                         shaft_is_in_a ? pair_.reliefs_B : std::span<const ThreadRelief>());
+  if (!fitted.is_free) return false;
+  result_.method = Method::Exact;
+  const Eigen::Vector3d place_B =
+      shaft_is_in_a ? fitted.place_V : Eigen::Vector3d(pair_.X_BA * fitted.place_V);
+  if (fitted.gap_mm > options_.tolerance_mm) {
+    result_.gap_mm = fitted.gap_mm;
+    is_decided_ = true;
+  } else if (fitted.gap_is_met) {
+    touch(std::max(fitted.gap_mm, 0.0), place_B);
+    is_decided_ = true;
+  }
+  return true;
+}
+
+bool Judge::takes_part(const ModelTriangle& t) const {
+  return options_.holes == HoleMode::Exact || !t.is_hole;
+}
+
+template <class Visit>
+void Judge::for_each_pair(const Visit& visit) const {
+  for (std::uint32_t i = 0; i < pair_.a.triangles().size(); ++i) {
+    const ModelTriangle& a = pair_.a.triangles()[i];
+    if (!takes_part(a)) continue;
+    const PlacedTriangle a_B = placement_ * a;
+    for (std::uint32_t j = 0; j < pair_.b.triangles().size(); ++j) {
+      if (takes_part(pair_.b.triangles()[j]) && !visit(i, a_B, j)) return;
+    }
+  }
+}
+
+void Judge::note_method(std::uint32_t i, std::uint32_t j) {
+  const ModelTriangle& a = pair_.a.triangles()[i];
+  const ModelTriangle& b = pair_.b.triangles()[j];
+  if (result_.method == Method::Boxes) result_.method = Method::Facets;
+  if (a.slack_mm + b.slack_mm > 0.0) result_.method = Method::Exact;
+  const Face& face_a = pair_.a.face(a.face);
+  const Face& face_b = pair_.b.face(b.face);
+  const double unknown = (is_exact(face_a) ? 0.0 : face_a.facet_error_mm) +
+                         (is_exact(face_b) ? 0.0 : face_b.facet_error_mm);
+  result_.bound_mm = std::max(result_.bound_mm, unknown);
+}
+
+}  // namespace dowel

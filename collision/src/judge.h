@@ -1,0 +1,150 @@
+#pragma once
+
+#include <optional>
+
+#include "facet_pairs.h"
+#include "narrow_phase.h"
+#include "witness.h"
+
+// The verdict on one pair. Private to collision: judge.cpp decides in which order to ask, and has
+// what forbids interference; judge_contact.cpp and judge_interference.cpp look for either.
+
+namespace dowel {
+
+/// Collects the evidence on one pair at one pose.
+class Judge {
+ public:
+  Judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
+        NarrowScratch& scratch, QueryCounters& counters)
+      : pair_(pair),
+        X_AB_(pair.X_BA.inverse()),
+        placement_(pair.X_BA),
+        options_(options),
+        memory_(memory),
+        scratch_(scratch),
+        counters_(counters),
+        erosion_mm_(0.5 * options.tolerance_mm) {}
+
+  /// What was found out at the last pose, tested at this one. False where that decides nothing.
+  bool recall();
+
+  PairVerdict decide();
+
+  /// The same by looking at all pairs of facets, without knowing of anything that forbids one or
+  /// the other.
+  PairVerdict decide_by_brute_force();
+
+  const PairVerdict& result() const { return result_; }
+
+ private:
+  // What forbids interference.
+
+  bool boxes_are_shallow();
+
+  bool are_still_shallow() const;
+
+  /// Looks for a shaft of one body in a bore of the other. May decide the pair.
+  bool shaft_fits();
+
+  /// Whether a shaft's axis passes the middle of the bore within its largest radius.
+  static bool may_hold(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                       const AxisProfile& bore);
+
+  bool take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v);
+
+  // Contact.
+
+  void touch(double gap_mm, const Eigen::Vector3d& place_B);
+
+  /// Contact of facets `i` and `j`, at a place of either's face.
+  void touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
+             const Eigen::Vector3d& on_b);
+
+  /// Whether the facets that were in contact still are: at the same place of either, if not, at
+  /// another one, or the same place of a body at another facet of the other one.
+  bool still_touches();
+
+  /// Whether a place of A's facet `i` is within the tolerance of what facet `j` of B stands for.
+  bool touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j);
+
+  /// The same for a place of B.
+  bool touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j);
+
+  /// Looks for facets within the tolerance: first, at little cost, flat ones that face each other,
+  /// as in most contacts, then all.
+  void look_for_contact();
+
+  /// Whether a seat of one body is in contact on a plane of the other one.
+  bool seat_touches();
+
+  /// Whether facets of two nodes may face each other.
+  bool may_face(const BvhNode& a, const BvhNode& b) const;
+
+  /// Calls `found(i, facet i of A in B, j)` for facets of wanted nodes whose boxes are within the
+  /// tolerance, until it returns true. Returns a lower bound of the distance of those that were
+  /// left out.
+  template <class WantedNodes, class Found>
+  double visit_near(const WantedNodes& wanted_nodes, const Found& found);
+
+  /// Whether two flat facets that face each other within the tolerance have an area in common.
+  bool faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j);
+
+  /// Whether the exact faces behind two facets come within the tolerance there. Else lowers `apart`
+  /// to a bound of their distance.
+  bool touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j, double& apart);
+
+  /// Projects to and fro between the exact faces behind two facets: both ends are real places of
+  /// the boundary.
+  bool is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b);
+
+  // Interference.
+
+  bool is_interference() const { return result_.verdict == Verdict::Interference; }
+
+  /// The ball that the last query found, moved with A, is still deep enough in both, or one close
+  /// to it is.
+  bool knows_ball();
+
+  void look_for_interference();
+
+  /// Whether a witness of interference is found from two facets.
+  bool crosses(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j);
+
+  /// How far a witness may lie from its start.
+  double reach_mm(const ModelTriangle& a, const ModelTriangle& b) const;
+
+  bool try_start(const Eigen::Vector3d& start_B, std::uint32_t i, std::uint32_t j, double reach);
+
+  bool try_witness(const std::optional<Witness>& witness);
+
+  /// Points stored deep in each solid, against the other.
+  void look_for_containment();
+
+  bool try_inner_point(const Eigen::Vector3d& point_B, double depth_mm);
+
+  static bool in_box(const CollisionModel& model, const Eigen::Vector3d& point);
+
+  // Both.
+
+  bool takes_part(const ModelTriangle& t) const;
+
+  /// Calls `visit(i, facet i of A in B, j)` for all facets until it returns false.
+  template <class Visit>
+  void for_each_pair(const Visit& visit) const;
+
+  void note_method(std::uint32_t i, std::uint32_t j);
+
+  const ModelPair& pair_;
+  Pose X_AB_;
+  Placement placement_;
+  const QueryOptions& options_;
+  PairMemory& memory_;
+  NarrowScratch& scratch_;
+  QueryCounters& counters_;
+  double erosion_mm_;
+  bool is_decided_ = false;
+  bool is_suspect_ = false;  // facets came within the tolerance and what their faces stand off them
+  PairVerdict result_;
+};
+
+}  // namespace dowel

@@ -1,0 +1,269 @@
+// Whether two bodies touch.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "exact_face.h"
+#include "judge.h"
+#include "triangle_pair.h"
+
+namespace dowel {
+namespace {
+
+/// Alternating projections between two exact faces before their gap is taken as it stands, and the
+/// share of the tolerance below which another one gains nothing.
+constexpr int kProjections = 16;
+constexpr double kProjectionGain = 1.0e-3;
+
+/// Cosine above which two facets are parallel enough to look for what they have in common.
+constexpr double kOpposite = 0.999;
+
+/// Seats are tried on planes that are this many tolerances apart at their origins at most: planes
+/// that are not quite parallel may be closer elsewhere.
+constexpr double kSeatApart = 4.0;
+
+/// Slack of the cones of normals for that angle and for single precision.
+constexpr double kConeSlack = 0.06;
+
+/// A point in the middle of what two facets in one plane have in common; nothing where that is no
+/// area.
+std::optional<Eigen::Vector3d> middle_of_overlap(const Corners& a, const Corners& b,
+                                                 const Eigen::Vector3d& normal_b) {
+  std::array<Eigen::Vector3d, 9> polygon{a[0], a[1], a[2]};
+  std::size_t count = 3;
+  for (std::size_t edge = 0; edge < 3 && count > 2; ++edge) {
+    const Eigen::Vector3d inward = normal_b.cross(b[(edge + 1) % 3] - b[edge]);
+    std::array<Eigen::Vector3d, 9> kept;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d& p = polygon[i];
+      const Eigen::Vector3d& q = polygon[(i + 1) % count];
+      const double dp = inward.dot(p - b[edge]);
+      const double dq = inward.dot(q - b[edge]);
+      if (dp >= 0.0) kept[n++] = p;
+      if ((dp < 0.0) != (dq < 0.0)) kept[n++] = p + dp / (dp - dq) * (q - p);
+    }
+    polygon = kept;
+    count = n;
+  }
+  if (count < 3) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
+  return sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+void Judge::touch(double gap_mm, const Eigen::Vector3d& place_B) {
+  result_.verdict = Verdict::Contact;
+  result_.gap_mm = gap_mm;
+  result_.witness_W = place_B;
+}
+
+void Judge::touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
+                  const Eigen::Vector3d& on_b) {
+  touch((on_a_B - on_b).norm(), 0.5 * (on_a_B + on_b));
+  memory_.contact_a = i;
+  memory_.contact_b = j;
+  memory_.has_contact_place = true;
+  memory_.contact_A = X_AB_ * on_a_B;
+  memory_.contact_B = on_b;
+}
+
+bool Judge::still_touches() {
+  if (memory_.contact_a == PairMemory::kNone) return false;
+  const std::uint32_t i = memory_.contact_a;
+  const std::uint32_t j = memory_.contact_b;
+  const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
+  const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
+  if (memory_.has_contact_place && (touches_at(i, on_a_B, j) || touched_at(i, on_b_A, j))) {
+    return true;
+  }
+  const PlacedTriangle a_B = placement_ * pair_.a.triangles()[i];
+  if (faces_lie_on_each_other(i, a_B, j)) return true;
+  if (double ignored = 0.0; !memory_.has_contact_place && touches(i, a_B, j, ignored)) return true;
+  if (memory_.has_contact_place && options_.holes == HoleMode::Exact) {
+    const double reach_mm = options_.tolerance_mm;
+    if (const auto near = pair_.b.nearest_within(on_a_B, reach_mm)) {
+      if (touches_at(i, on_a_B, near->triangle)) return true;
+    }
+    if (const auto near = pair_.a.nearest_within(on_b_A, reach_mm)) {
+      if (touched_at(near->triangle, on_b_A, j)) return true;
+    }
+  }
+  memory_.contact_a = PairMemory::kNone;
+  return false;
+}
+
+bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j) {
+  ++counters_.triangle_tests;
+  const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B);
+  if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+  note_method(i, j);
+  is_suspect_ = true;
+  touch(i, on_a_B, j, near.point);
+  return true;
+}
+
+bool Judge::touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j) {
+  ++counters_.triangle_tests;
+  const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A);
+  if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+  note_method(i, j);
+  is_suspect_ = true;
+  touch(i, placement_ * near.point, j, pair_.X_BA * on_b_A);
+  return true;
+}
+
+void Judge::look_for_contact() {
+  if (seat_touches()) return;
+  visit_near([&](const BvhNode& a, const BvhNode& b) { return may_face(a, b); },
+             [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+               return faces_lie_on_each_other(i, a_B, j);
+             });
+  if (result_.verdict == Verdict::Contact) return;
+  double apart = std::numeric_limits<double>::infinity();
+  const double pruned = visit_near([](const BvhNode&, const BvhNode&) { return true; },
+                                   [&](std::uint32_t i, const PlacedTriangle& a_B,
+                                       std::uint32_t j) { return touches(i, a_B, j, apart); });
+  if (result_.verdict == Verdict::Clear) {
+    result_.gap_mm = std::max(std::min(apart, pruned), options_.tolerance_mm);
+  }
+}
+
+bool Judge::seat_touches() {
+  if (options_.holes == HoleMode::Paper) return false;
+  for (const SeatPlane& a : pair_.a.seat_planes()) {
+    const Eigen::Vector3d normal_B = placement_.rotation * a.plane.normal;
+    const Eigen::Vector3d origin_B = placement_ * a.plane.origin;
+    for (const SeatPlane& b : pair_.b.seat_planes()) {
+      if (normal_B.dot(b.plane.normal) > -kOpposite) continue;
+      const double apart = std::abs(b.plane.normal.dot(origin_B - b.plane.origin));
+      if (apart > kSeatApart * options_.tolerance_mm) continue;
+      for (const Seat& seat : pair_.a.seats(a)) {
+        const Eigen::Vector3d on_a_B = placement_ * seat.point;
+        const auto near = pair_.b.nearest_within(on_a_B, options_.tolerance_mm);
+        if (near && touches_at(seat.triangle, on_a_B, near->triangle)) return true;
+      }
+      for (const Seat& seat : pair_.b.seats(b)) {
+        const Eigen::Vector3d on_b_A = X_AB_ * seat.point;
+        const auto near = pair_.a.nearest_within(on_b_A, options_.tolerance_mm);
+        if (near && touched_at(near->triangle, on_b_A, seat.triangle)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool Judge::may_face(const BvhNode& a, const BvhNode& b) const {
+  const Eigen::Vector3d normal_B = placement_.rotation * a.normal.cast<double>();
+  const double opposite = -normal_B.dot(b.normal.cast<double>());
+  const double cosine = a.cosine * b.cosine - a.sine * b.sine;  // of both spreads together
+  return a.cosine <= 0.0F || b.cosine <= 0.0F || opposite >= cosine - kConeSlack;
+}
+
+template <class WantedNodes, class Found>
+double Judge::visit_near(const WantedNodes& wanted_nodes, const Found& found) {
+  double left_out = std::numeric_limits<double>::infinity();
+  for_each_leaf_pair(
+      pair_, scratch_, counters_, wanted_nodes,
+      [&](double gap_mm) {
+        if (gap_mm > options_.tolerance_mm) left_out = std::min(left_out, gap_mm);
+        return gap_mm <= options_.tolerance_mm;
+      },
+      [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
+        return for_each_near_pair(
+            pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, left_out,
+            [this](const ModelTriangle& t) { return takes_part(t); },
+            [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+              return !found(i, a_B, j);
+            });
+      });
+  return left_out;
+}
+
+bool Judge::faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+  const ModelTriangle& a = pair_.a.triangles()[i];
+  const ModelTriangle& b = pair_.b.triangles()[j];
+  if (a_B.normal_B.dot(b.normal) > -kOpposite) return false;
+  ++counters_.triangle_tests;
+  if (apart_by_planes(a, a_B, b) > options_.tolerance_mm ||
+      box_gap(a_B.corners_B, b.corners) > options_.tolerance_mm) {
+    return false;
+  }
+  const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
+  if (!middle || !is_between_faces(i, j, *middle)) return false;
+  note_method(i, j);
+  is_suspect_ = true;
+  return true;
+}
+
+bool Judge::touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j, double& apart) {
+  const ModelTriangle& a = pair_.a.triangles()[i];
+  const ModelTriangle& b = pair_.b.triangles()[j];
+  ++counters_.triangle_tests;
+  const double slack = a.slack_mm + b.slack_mm;
+  const double margin = options_.tolerance_mm + slack;
+  const double between = apart_by_planes(a, a_B, b);
+  if (between > options_.tolerance_mm) {
+    apart = std::min(apart, between);
+    return false;
+  }
+  if (const double gap = box_gap(a_B.corners_B, b.corners); gap > margin) {
+    apart = std::min(apart, gap - slack);
+    return false;
+  }
+  note_method(i, j);
+  if (const double gap = std::max(beyond_edges(b.corners, b.normal, a_B.corners_B),
+                                  beyond_edges(a_B.corners_B, a_B.normal_B, b.corners));
+      gap > margin) {
+    apart = std::min(apart, gap - slack);
+    return false;
+  }
+  const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
+  const double gap = std::sqrt(closest.distance_squared_mm2);
+  if (gap > margin) {
+    apart = std::min(apart, gap - slack);
+    return false;
+  }
+  is_suspect_ = true;
+  if (slack == 0.0) {
+    touch(i, closest.on_a, j, closest.on_b);
+    return true;
+  }
+  if (is_between_faces(i, j, closest.on_b)) return true;
+  const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
+  if (const auto place = find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
+    touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
+    memory_.contact_a = i;
+    memory_.contact_b = j;
+    memory_.has_contact_place = false;
+    return true;
+  }
+  apart = options_.tolerance_mm;
+  return false;
+}
+
+bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b) {
+  double previous = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < kProjections; ++step) {
+    const FacePoint near_a = nearest_on_patch(pair_.a, i, X_AB_ * on_b);
+    const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
+    const FacePoint near_b = nearest_on_patch(pair_.b, j, on_a);
+    if (!std::isfinite(near_a.distance_squared_mm2 + near_b.distance_squared_mm2)) return false;
+    on_b = near_b.point;
+    const double gap = std::sqrt(near_b.distance_squared_mm2);
+    if (gap <= options_.tolerance_mm) {
+      touch(i, on_a, j, on_b);
+      return true;
+    }
+    if (previous - gap < kProjectionGain * options_.tolerance_mm) return false;
+    previous = gap;
+  }
+  return false;
+}
+
+}  // namespace dowel
