@@ -21,6 +21,10 @@ constexpr double kFacesFloor = 0.1;
 /// simple fraction, so that none decides by rounding.
 constexpr double kHiddenShare = 0.55;
 
+/// A wall is cut from a bar where the bar's round takes up more of its run than this; fillets of a
+/// block's edges take less.
+constexpr double kOnBarShare = 0.8;
+
 /// Whether floors that do not meet belong together is probed this far above them, in widths.
 constexpr double kProbeHeight = 0.05;
 
@@ -67,6 +71,22 @@ void look_up(const SolidView& view, const Eigen::Vector3d& up, GrooveSide& side)
   side.is_open = !side.throats.empty();
 }
 
+/// Whether a wall ends at its top in the round of a bar that its groove crosses, as the walls of
+/// wrench flats do.
+bool is_cut_from_bar(const SolidView& view, const PlanePatch& wall, const Eigen::Vector3d& run) {
+  double on_bar_mm = 0.0;
+  for (const std::uint32_t face : wall.faces) {
+    for (const RimEdge& edge : view.graph[face].rim) {
+      const FaceNode& across = view.graph[edge.face_across];
+      const auto* const bar = std::get_if<CylinderSurface>(&across.surface);
+      if (bar == nullptr || across.reversed) continue;
+      if (bar->axis.cross(wall.plane.normal).norm() > kCoaxial_rad) continue;
+      on_bar_mm += std::abs(run.dot(view.solid.vertices[edge.to] - view.solid.vertices[edge.from]));
+    }
+  }
+  return on_bar_mm > kOnBarShare * extent_along(view.solid, wall.vertices, run).length_mm();
+}
+
 /// Walls that stand on the floors, each once.
 std::vector<GrooveSide> sides_on(const SolidView& view, const std::vector<std::size_t>& floors,
                                  const Eigen::Vector3d& up) {
@@ -75,6 +95,7 @@ std::vector<GrooveSide> sides_on(const SolidView& view, const std::vector<std::s
     for (const PatchLink& link : view.patches.links[floor]) {
       const PlanePatch& wall = patch(view, link.patch);
       if (!link.is_concave || !are_square(wall.plane.normal, up)) continue;
+      if (is_cut_from_bar(view, wall, run_of(up, wall.plane.normal))) continue;
       GrooveSide& side = by_wall[link.patch];
       side.wall = link.patch;
       side.floors.push_back(floor);

@@ -102,14 +102,16 @@ bool are_coplanar(const FacetedSolid& solid, const FaceNode& a, const FaceNode& 
   });
 }
 
-/// Planar faces across which the surface hardly turns, by face.
+/// Planar faces across which the surface turns, but little, by face. Pieces of one plane do not.
 std::vector<std::vector<std::uint32_t>> near_tangent_neighbours(
     const std::vector<FaceNode>& graph) {
   const double least_cosine = std::cos(kCrease_rad);
   std::vector<std::vector<std::uint32_t>> result(graph.size());
   for (std::size_t face = 0; face < graph.size(); ++face) {
     for (const std::uint32_t next : graph[face].neighbours) {
-      if (plane_of(graph[face]).normal.dot(plane_of(graph[next]).normal) > least_cosine) {
+      const Eigen::Vector3d& here = plane_of(graph[face]).normal;
+      const Eigen::Vector3d& there = plane_of(graph[next]).normal;
+      if (here.dot(there) > least_cosine && here.cross(there).norm() > kCoaxial_rad) {
         result[face].push_back(next);
       }
     }

@@ -488,6 +488,20 @@ TEST_CASE("split and free-form faces change no slot") {
   }
 }
 
+TEST_CASE("planes in many pieces are one face each, also where a solid has nothing but planes") {
+  const FacetedSolid solid = cross_of_grooves();
+  const std::vector<Feature> slots = slots_of(solid);
+  REQUIRE_FALSE(slots.empty());
+  const FacetedSolid pieces = testing::in_triangles(solid);
+  check_moved(slots, slots_of(pieces), Pose(), kSame_mm);
+  const auto count_faces = [](const FacetedSolid& of) {
+    const std::vector<Feature> features = recognise_features(of);
+    return std::count_if(features.begin(), features.end(),
+                         [](const Feature& f) { return f.kind == FeatureKind::Face; });
+  };
+  CHECK(count_faces(pieces) == count_faces(solid));
+}
+
 TEST_CASE("triangle tags and the other features are not those of slots") {
   const FacetedSolid solid = grooved_block();
   const std::vector<Feature> features = recognise_features(solid);

@@ -98,6 +98,20 @@ inline FacetedSolid with_split_faces(FacetedSolid solid, double at_x) {
   return solid;
 }
 
+/// Every face in its triangles, each a face of its own on the same surface.
+inline FacetedSolid in_triangles(FacetedSolid solid) {
+  std::vector<Face> faces;
+  for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
+    const auto c = solid.corners(t);
+    faces.push_back(solid.faces[solid.face_of[t]]);
+    faces.back().area_mm2 = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    solid.face_of[t] = t;
+  }
+  solid.faces = std::move(faces);
+  solid.edges.clear();
+  return solid;
+}
+
 /// As from an exporter that writes B-splines only: no face tells its surface.
 inline FacetedSolid without_surfaces(FacetedSolid solid) {
   for (Face& face : solid.faces) {
