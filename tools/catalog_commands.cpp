@@ -220,12 +220,15 @@ void add_search(CLI::App& catalog) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* const command = catalog.add_subcommand(
       "search",
-      "Lists the elements that match all terms: words in the name, family, shape or features, and "
-      "comparisons of length, width, height, hole, shaft, slot, diameter, depth, holes or "
-      "volume.");
-  command->footer("Example: dowel catalog search elements.db riser 'height>=80' hole=12");
+      "Lists the elements that match all terms: words in the name, family, role, description, "
+      "shape, "
+      "material or features; comparisons of length, width, height, hole, shaft, slot, diameter, "
+      "depth, circle (mm), holes, volume (mm3) or mass (kg) with numbers; thread=M12, hole=M12 (or "
+      "hole M12), shaft=M12, fit=H7, role=clamp, material=steel.");
+  command->footer("Example: dowel catalog search elements.db \"riser height>=80 hole M12\"");
   command->add_option("CATALOG.db", arguments->file)->required();
-  command->add_option("TERM", arguments->terms, "riser, 'height>=80', hole=12, d=10..16")
+  command
+      ->add_option("TERM", arguments->terms, "riser, 'height>=80', hole=12, d=10..16, \"hole M12\"")
       ->required();
   command->add_flag("--json", arguments->json, "one line of JSON an element");
   command->callback([arguments] {
@@ -284,7 +287,35 @@ std::string describe(const Feature& feature) {
     case FeatureKind::Shaft:
       break;
   }
+  const auto add = [&text](const std::string& word) {
+    if (!word.empty()) text += (text.empty() ? "" : "; ") + printable(word);
+  };
+  add(feature.thread_is_guess ? "likely " + feature.thread : feature.thread);
+  add(feature.fit);
+  add(feature.use);
   return text;
+}
+
+std::string circles_text(const Element& element) {
+  std::string text;
+  for (const BoltCircle& circle : element.bolt_circles) {
+    text += "bolt circle of " + short_number(circle.diameter_mm) + " about " +
+            point_text(circle.center) + ": " + counted(circle.holes.size(), "hole") + " of " +
+            short_number(circle.hole_diameter_mm) + ",";
+    for (const std::string& hole : circle.holes) text += " " + printable(hole);
+    text += "\n";
+  }
+  return text.empty() ? text : "\n" + text;
+}
+
+std::string material_text(const Element& element) {
+  if (element.material.empty()) return "not stated";
+  const std::optional<double> mass_kg = element.mass_kg();
+  return element.material + (mass_kg ? ", " + short_number(*mass_kg) + " kg" : "");
+}
+
+std::string stated(const std::string& text) {
+  return text.empty() ? "not stated" : text;
 }
 
 std::string features_text(const Element& element) {
@@ -310,6 +341,10 @@ std::string to_text(const Element& element) {
   const std::vector<std::pair<const char*, std::string>> lines{
       {"name", element.name},
       {"family", element.family},
+      {"role", stated(element.role)},
+      {"description", stated(element.description)},
+      {"dimensions by", stated(element.dimensions_by)},
+      {"material", material_text(element)},
       {"shape", std::string(to_string(element.shape))},
       {"size", size_text(element) + " mm"},
       {"volume", short_number(element.volume_mm3) + " mm3"},
@@ -329,7 +364,7 @@ std::string to_text(const Element& element) {
     padded.resize(16, ' ');
     text += (value.empty() ? title : padded + printable(value)) + "\n";
   }
-  return text + "\n" + features_text(element);
+  return text + "\n" + features_text(element) + circles_text(element);
 }
 
 void add_show(CLI::App& catalog) {

@@ -1,6 +1,7 @@
 #include "element_json.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace dowel::tools {
 namespace {
@@ -62,6 +63,33 @@ Json to_json(const Feature& feature) {
   }
   if (feature.slot) add_slot(*feature.slot, json);
   if (feature.kind == FeatureKind::Face) json["area_mm2"] = feature.area_mm2;
+  if (!feature.use.empty()) json["use"] = feature.use;
+  if (!feature.thread.empty()) {
+    json["thread"] = feature.thread;
+    json["thread_is_guess"] = feature.thread_is_guess;
+  }
+  if (!feature.fit.empty()) json["fit"] = feature.fit;
+  return json;
+}
+
+void add_design(const Element& element, Json& json) {
+  json["role"] = element.role;
+  json["description"] = element.description;
+  json["material"] = element.material;
+  json["dimensions_by"] = element.dimensions_by;
+  const std::optional<double> mass_kg = element.mass_kg();
+  json["density_kg_per_m3"] = mass_kg ? Json(element.density_kg_per_m3) : Json();
+  json["mass_kg"] = mass_kg ? Json(*mass_kg) : Json();
+}
+
+Json to_json(const BoltCircle& circle) {
+  Json json;
+  json["diameter"] = circle.diameter_mm;
+  json["hole_diameter"] = circle.hole_diameter_mm;
+  json["count"] = circle.holes.size();
+  json["holes"] = circle.holes;
+  json["axis"]["origin"] = tools::to_json(circle.center);
+  json["axis"]["direction"] = tools::to_json(circle.direction);
   return json;
 }
 
@@ -113,6 +141,11 @@ Json to_json(const Element& element) {
   for (const Feature& feature : element.features) json["features"].push_back(to_json(feature));
   json["center_of_mass"] = to_json(element.center_of_mass);
   json["licence"] = element.licence;
+  add_design(element, json);
+  json["bolt_circles"] = Json::array();
+  for (const BoltCircle& circle : element.bolt_circles) {
+    json["bolt_circles"].push_back(to_json(circle));
+  }
   if (element.colour) json["colour"] = *element.colour;
   return json;
 }
@@ -124,6 +157,9 @@ Json to_summary_json(const Element& element) {
   json["shape"] = to_string(element.shape);
   json["size"] = to_json(box_size_mm(element));
   json["volume_mm3"] = element.volume_mm3;
+  json["role"] = element.role;
+  const std::optional<double> mass_kg = element.mass_kg();
+  json["mass_kg"] = mass_kg ? Json(*mass_kg) : Json();
   json["holes"] = count_features(element, FeatureKind::Hole);
   json["shafts"] = count_features(element, FeatureKind::Shaft);
   json["faces"] = count_features(element, FeatureKind::Face);

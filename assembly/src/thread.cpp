@@ -1,7 +1,6 @@
 #include "dowel/assembly/thread.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "dowel/kernel/check.h"
@@ -10,27 +9,10 @@
 namespace dowel {
 namespace {
 
-constexpr std::array<MetricThread, 13> kMetricThreads{{{3.0, 0.5, 2.5},
-                                                       {4.0, 0.7, 3.3},
-                                                       {5.0, 0.8, 4.2},
-                                                       {6.0, 1.0, 5.0},
-                                                       {8.0, 1.25, 6.8},
-                                                       {10.0, 1.5, 8.5},
-                                                       {12.0, 1.75, 10.2},
-                                                       {14.0, 2.0, 12.0},
-                                                       {16.0, 2.0, 14.0},
-                                                       {18.0, 2.5, 15.5},
-                                                       {20.0, 2.5, 17.5},
-                                                       {22.0, 2.5, 19.5},
-                                                       {24.0, 3.0, 21.0}}};
-
-bool is_core_hole(const MetricThread& thread, double hole_diameter_mm) {
-  return hole_diameter_mm >= thread.minor_mm() - kTapDrillSlack_mm &&
-         hole_diameter_mm <= thread.tap_drill_mm + kTapDrillSlack_mm;
-}
-
-bool is_core_hole(const MetricThread& thread, const HoleSegment& segment) {
-  return segment.type == HoleSegment::Type::Cylinder && is_core_hole(thread, segment.diameter_mm);
+/// True where `segment` is a core hole for a thread of the shaft's diameter.
+bool is_core_hole(const Feature& shaft, const HoleSegment& segment) {
+  return segment.type == HoleSegment::Type::Cylinder &&
+         forms_thread(shaft.diameter_mm, segment.diameter_mm);
 }
 
 /// A stretch of depth along a hole.
@@ -62,22 +44,6 @@ bool is_coaxial(const Feature& shaft, const Pose& X_HS, const Feature& hole, dou
 }
 
 }  // namespace
-
-std::span<const MetricThread> metric_threads() {
-  return kMetricThreads;
-}
-
-const MetricThread* thread_of_shaft(double shaft_diameter_mm) {
-  const auto* const found = std::ranges::find_if(kMetricThreads, [=](const MetricThread& thread) {
-    return std::abs(thread.nominal_mm - shaft_diameter_mm) <= kThreadNominalSlack_mm;
-  });
-  return found == kMetricThreads.end() ? nullptr : found;
-}
-
-bool forms_thread(double shaft_diameter_mm, double hole_diameter_mm) {
-  const MetricThread* thread = thread_of_shaft(shaft_diameter_mm);
-  return thread != nullptr && is_core_hole(*thread, hole_diameter_mm);
-}
 
 AxisFit fit_on_axis(const Feature& shaft, const Pose& X_WS, const Feature& hole, const Pose& X_WH) {
   DOWEL_EXPECTS(shaft.kind == FeatureKind::Shaft && hole.kind == FeatureKind::Hole);
@@ -125,7 +91,7 @@ std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT
       if (hole.kind != FeatureKind::Hole) continue;
       for (std::size_t i = 0; i < hole.segments.size(); ++i) {
         const HoleSegment& segment = hole.segments[i];
-        if (!is_core_hole(*thread, segment)) continue;
+        if (!is_core_hole(shaft, segment)) continue;
         if (!is_coaxial(shaft, X_TS, hole, 0.5 * (segment.from_mm + segment.to_mm))) continue;
         const Stretch stretch = with_chamfers(hole.segments, i);
         reliefs.push_back({.start = hole.origin + stretch.from_mm * hole.direction,
@@ -141,13 +107,12 @@ std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT
 bool may_form_thread(const Element& tapped, const Element& screw) {
   return std::ranges::any_of(screw.features, [&](const Feature& shaft) {
     if (shaft.kind != FeatureKind::Shaft) return false;
-    const MetricThread* thread = thread_of_shaft(shaft.diameter_mm);
-    return thread != nullptr && std::ranges::any_of(tapped.features, [&](const Feature& hole) {
-             return hole.kind == FeatureKind::Hole &&
-                    std::ranges::any_of(hole.segments, [&](const HoleSegment& segment) {
-                      return is_core_hole(*thread, segment);
-                    });
-           });
+    return std::ranges::any_of(tapped.features, [&](const Feature& hole) {
+      return hole.kind == FeatureKind::Hole &&
+             std::ranges::any_of(hole.segments, [&](const HoleSegment& segment) {
+               return is_core_hole(shaft, segment);
+             });
+    });
   });
 }
 

@@ -63,11 +63,32 @@ std::optional<std::string> find_defect(const Feature& feature) {
   return std::nullopt;
 }
 
+std::optional<std::string> find_defect(const BoltCircle& circle, const Element& element) {
+  if (!circle.center.allFinite()) return "its centre is not finite";
+  if (!is_unit(circle.direction)) return "its direction is not of unit length";
+  if (!are_sizes({circle.diameter_mm, circle.hole_diameter_mm})) {
+    return "its diameter is not a finite size";
+  }
+  for (const std::string& name : circle.holes) {
+    const Feature* const hole = element.find_feature(name);
+    if (hole == nullptr || hole->kind != FeatureKind::Hole) {
+      return "there is no hole \"" + name + "\"";
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const Feature* Element::find_feature(std::string_view feature_name) const {
   const auto found = std::ranges::find(features, feature_name, &Feature::name);
   return found == features.end() ? nullptr : &*found;
+}
+
+std::optional<double> Element::mass_kg() const {
+  constexpr double kCubicMetres_per_mm3 = 1.0e-9;
+  if (density_kg_per_m3 == 0.0) return std::nullopt;
+  return volume_mm3 * kCubicMetres_per_mm3 * density_kg_per_m3;
 }
 
 std::string_view to_string(ShapeClass shape) {
@@ -132,8 +153,9 @@ std::string_view to_string(SlotShape::End end) {
 
 std::optional<std::string> find_defect(const Element& element) {
   if (element.name.empty()) return "its name is empty";
-  if (!are_sizes({element.volume_mm3, element.surface_mm2, element.facet_error_mm})) {
-    return "its volume, surface or facet error is not a finite size";
+  if (!are_sizes({element.volume_mm3, element.surface_mm2, element.facet_error_mm,
+                  element.density_kg_per_m3})) {
+    return "its volume, surface, facet error or density is not a finite size";
   }
   if (!element.center_of_mass.allFinite()) return "its centre of mass is not finite";
   if (!element.obb.center.allFinite()) return "its box is not at a finite place";
@@ -151,6 +173,9 @@ std::optional<std::string> find_defect(const Element& element) {
       return "two features are called \"" + feature.name + "\"";
     }
     if (auto defect = find_defect(feature)) return "feature \"" + feature.name + "\": " + *defect;
+  }
+  for (const BoltCircle& circle : element.bolt_circles) {
+    if (auto defect = find_defect(circle, element)) return "a bolt circle: " + *defect;
   }
   return std::nullopt;
 }

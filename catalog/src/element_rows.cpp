@@ -1,13 +1,11 @@
 #include "element_rows.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "dowel/kernel/error.h"
+#include "rows.h"
 #include "schema.h"
 
 namespace dowel {
@@ -61,118 +59,39 @@ constexpr const char* kSelectSlots = R"(
     undercut_width_mm, undercut_height_mm, nominal_mm, feature_position
   FROM slot WHERE element_id = ? ORDER BY feature_position)";
 
-/// Binds the parameters of a statement from the first on.
-class RowWriter {
- public:
-  explicit RowWriter(SQLite::Statement& statement) : statement_(statement) { statement_.reset(); }
+constexpr const char* kInsertElementDesign = R"(
+  INSERT INTO element_design (element_id, role, description, material, dimensions_by,
+    density_kg_per_m3)
+  VALUES (?,?,?,?,?,?))";
 
-  RowWriter& operator<<(std::int64_t value) { return bind(value); }
-  RowWriter& operator<<(std::uint32_t value) { return bind(std::int64_t{value}); }
-  RowWriter& operator<<(double value) { return bind(value); }
-  RowWriter& operator<<(std::string_view value) { return bind(std::string(value)); }
-  RowWriter& operator<<(const Eigen::Vector3d& value) {
-    return bind(value.x()).bind(value.y()).bind(value.z());
-  }
-  RowWriter& null() {
-    statement_.bind(next_++);
-    return *this;
-  }
-  void execute() { statement_.exec(); }
+constexpr const char* kSelectElementDesign = R"(
+  SELECT role, description, material, dimensions_by, density_kg_per_m3
+  FROM element_design WHERE element_id = ?)";
 
- private:
-  template <class Value>
-  RowWriter& bind(const Value& value) {
-    statement_.bind(next_++, value);
-    return *this;
-  }
+constexpr const char* kInsertFeatureDesign = R"(
+  INSERT INTO feature_design (element_id, feature_position, use, thread, thread_is_guess, fit)
+  VALUES (?,?,?,?,?,?))";
 
-  SQLite::Statement& statement_;
-  int next_ = 1;
-};
+constexpr const char* kSelectFeatureDesigns = R"(
+  SELECT use, thread, thread_is_guess, fit, feature_position
+  FROM feature_design WHERE element_id = ? ORDER BY feature_position)";
 
-/// Reads the columns of a row from the first on and checks each: damage can put anything anywhere.
-class RowReader {
- public:
-  /// `place` begins every complaint.
-  RowReader(SQLite::Statement& statement, const std::string& place)
-      : statement_(statement), place_(place) {}
+constexpr const char* kInsertBoltCircle = R"(
+  INSERT INTO bolt_circle (element_id, position, center_x, center_y, center_z, direction_x,
+    direction_y, direction_z, diameter_mm, hole_diameter_mm)
+  VALUES (?,?,?,?,?,?,?,?,?,?))";
 
-  std::string text() {
-    const SQLite::Column column = next();
-    if (!column.isText()) fail(column, "a text");
-    return column.getString();
-  }
-  double real() {
-    const SQLite::Column column = next();
-    if (!column.isFloat()) fail(column, "a number");
-    return column.getDouble();
-  }
-  std::optional<double> optional_real() {
-    const SQLite::Column column = next();
-    if (column.isNull()) return std::nullopt;
-    if (!column.isFloat()) fail(column, "a number or nothing");
-    return column.getDouble();
-  }
-  Eigen::Vector3d vector() {
-    const double x = real();
-    const double y = real();
-    const double z = real();
-    return {x, y, z};
-  }
-  std::int64_t integer() {
-    const SQLite::Column column = next();
-    if (!column.isInteger()) fail(column, "a whole number");
-    return column.getInt64();
-  }
-  std::uint32_t count() {
-    const SQLite::Column column = statement_.getColumn(next_);
-    const std::int64_t value = integer();
-    if (value < 0 || value > std::numeric_limits<std::uint32_t>::max()) fail(column, "a count");
-    return static_cast<std::uint32_t>(value);
-  }
-  /// The one of `values` whose to_string the column holds.
-  template <class Enum, std::size_t N>
-  Enum one_of(const std::array<Enum, N>& values) {
-    const SQLite::Column column = statement_.getColumn(next_);
-    const std::string name = text();
-    for (const Enum value : values) {
-      if (to_string(value) == name) return value;
-    }
-    fail(column, "a known word");
-  }
-  /// A list of indices as "[1,2,3]".
-  std::vector<std::uint32_t> indices() {
-    const SQLite::Column column = statement_.getColumn(next_);
-    const std::string list = text();
-    std::vector<std::uint32_t> result;
-    if (list == "[]") return result;
-    const char* at = list.data();
-    const char* const end = at + list.size();
-    char expected = '[';
-    while (at != end && *at == expected) {
-      std::uint32_t value = 0;
-      const auto [rest, problem] = std::from_chars(at + 1, end, value);
-      if (problem != std::errc()) break;
-      result.push_back(value);
-      at = rest;
-      expected = ',';
-    }
-    if (result.empty() || end - at != 1 || *at != ']') fail(column, "a list of face numbers");
-    return result;
-  }
+constexpr const char* kInsertBoltCircleHole = R"(
+  INSERT INTO bolt_circle_hole (element_id, circle_position, position, hole) VALUES (?,?,?,?))";
 
- private:
-  SQLite::Column next() { return statement_.getColumn(next_++); }
+constexpr const char* kSelectBoltCircles = R"(
+  SELECT center_x, center_y, center_z, direction_x, direction_y, direction_z, diameter_mm,
+    hole_diameter_mm, position
+  FROM bolt_circle WHERE element_id = ? ORDER BY position)";
 
-  [[noreturn]] void fail(const SQLite::Column& column, const char* expected) const {
-    throw Error(ErrorCode::FileMalformed,
-                place_ + ": column " + column.getName() + ": expected " + expected);
-  }
-
-  SQLite::Statement& statement_;
-  const std::string& place_;
-  int next_ = 0;
-};
+constexpr const char* kSelectBoltCircleHoles = R"(
+  SELECT hole FROM bolt_circle_hole WHERE element_id = ? AND circle_position = ?
+  ORDER BY position)";
 
 std::string list_of(const std::vector<std::uint32_t>& indices) {
   std::string list = "[";
@@ -205,6 +124,25 @@ void insert_slot(SQLite::Database& database, std::int64_t element_id, std::int64
   row.execute();
 }
 
+/// What is stated about a feature; most have nothing, and no row.
+void insert_design(SQLite::Database& database, std::int64_t element_id, std::int64_t position,
+                   const Feature& feature) {
+  if (feature.use.empty() && feature.thread.empty() && feature.fit.empty()) return;
+  SQLite::Statement statement(database, kInsertFeatureDesign);
+  RowWriter row(statement);
+  row << element_id << position << feature.use << feature.thread
+      << std::int64_t{feature.thread_is_guess ? 1 : 0} << feature.fit;
+  row.execute();
+}
+
+void insert_design(SQLite::Database& database, std::int64_t element_id, const Element& element) {
+  SQLite::Statement statement(database, kInsertElementDesign);
+  RowWriter row(statement);
+  row << element_id << element.role << element.description << element.material
+      << element.dimensions_by << element.density_kg_per_m3;
+  row.execute();
+}
+
 void insert_features(SQLite::Database& database, std::int64_t element_id,
                      const std::vector<Feature>& features) {
   SQLite::Statement statement(database, kInsertFeature);
@@ -219,6 +157,26 @@ void insert_features(SQLite::Database& database, std::int64_t element_id,
     row.execute();
     insert_segments(database, element_id, position, feature.segments);
     if (feature.slot) insert_slot(database, element_id, position, *feature.slot);
+    insert_design(database, element_id, position, feature);
+  }
+}
+
+void insert_bolt_circles(SQLite::Database& database, std::int64_t element_id,
+                         const std::vector<BoltCircle>& circles) {
+  SQLite::Statement insert_circle(database, kInsertBoltCircle);
+  SQLite::Statement insert_hole(database, kInsertBoltCircleHole);
+  for (std::size_t i = 0; i < circles.size(); ++i) {
+    const BoltCircle& circle = circles[i];
+    const auto position = static_cast<std::int64_t>(i);
+    RowWriter row(insert_circle);
+    row << element_id << position << circle.center << circle.direction << circle.diameter_mm
+        << circle.hole_diameter_mm;
+    row.execute();
+    for (std::size_t j = 0; j < circle.holes.size(); ++j) {
+      RowWriter hole(insert_hole);
+      hole << element_id << position << static_cast<std::int64_t>(j) << circle.holes[j];
+      hole.execute();
+    }
   }
 }
 
@@ -282,7 +240,6 @@ void select_segments(SQLite::Database& database, std::int64_t element_id, Featur
 
 void select_slots(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
                   const std::string& place) {
-  if (database.execAndGet("PRAGMA user_version").getInt64() < kSlotVersion) return;
   using enum SlotShape::End;
   SQLite::Statement statement(database, kSelectSlots);
   statement.bind(1, element_id);
@@ -304,6 +261,62 @@ void select_slots(SQLite::Database& database, std::int64_t element_id, FeatureRo
     }
     feature->slot = slot;
   }
+}
+
+void select_designs(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+                    const std::string& place) {
+  SQLite::Statement statement(database, kSelectFeatureDesigns);
+  statement.bind(1, element_id);
+  while (statement.executeStep()) {
+    RowReader row(statement, place);
+    std::string use = row.text();
+    std::string thread = row.text();
+    const bool is_guess = row.integer() != 0;
+    std::string fit = row.text();
+    Feature* const feature = rows.at(row.integer());
+    if (feature == nullptr) {
+      throw Error(ErrorCode::FileMalformed, place + ": a thread or fit belongs to no feature");
+    }
+    feature->use = std::move(use);
+    feature->thread = std::move(thread);
+    feature->thread_is_guess = is_guess;
+    feature->fit = std::move(fit);
+  }
+}
+
+void select_design(SQLite::Database& database, std::int64_t element_id, Element& element,
+                   const std::string& place) {
+  SQLite::Statement statement(database, kSelectElementDesign);
+  statement.bind(1, element_id);
+  if (!statement.executeStep()) return;  // put before it was kept
+  RowReader row(statement, place);
+  element.role = row.text();
+  element.description = row.text();
+  element.material = row.text();
+  element.dimensions_by = row.text();
+  element.density_kg_per_m3 = row.real();
+}
+
+std::vector<BoltCircle> select_bolt_circles(SQLite::Database& database, std::int64_t element_id,
+                                            const std::string& place) {
+  SQLite::Statement circles(database, kSelectBoltCircles);
+  SQLite::Statement holes(database, kSelectBoltCircleHoles);
+  circles.bind(1, element_id);
+  std::vector<BoltCircle> result;
+  while (circles.executeStep()) {
+    RowReader row(circles, place);
+    BoltCircle circle;
+    circle.center = row.vector();
+    circle.direction = row.vector();
+    circle.diameter_mm = row.real();
+    circle.hole_diameter_mm = row.real();
+    holes.reset();
+    holes.bind(1, element_id);
+    holes.bind(2, row.integer());
+    while (holes.executeStep()) circle.holes.push_back(RowReader(holes, place).text());
+    result.push_back(std::move(circle));
+  }
+  return result;
 }
 
 }  // namespace
@@ -328,6 +341,8 @@ std::int64_t insert_element(SQLite::Database& database, std::int64_t source_id,
   row.execute();
   const std::int64_t id = database.getLastInsertRowid();
   insert_features(database, id, element.features);
+  insert_design(database, id, element);
+  insert_bolt_circles(database, id, element.bolt_circles);
   return id;
 }
 
@@ -370,7 +385,15 @@ std::optional<Element> select_element(SQLite::Database& database, std::string_vi
 
   FeatureRows rows = select_features(database, id, place);
   select_segments(database, id, rows, place);
-  select_slots(database, id, rows, place);
+  const std::int64_t version = database.execAndGet("PRAGMA user_version").getInt64();
+  if (version >= kSlotVersion) select_slots(database, id, rows, place);
+  if (version >= kDesignVersion) {
+    select_designs(database, id, rows, place);
+    select_design(database, id, element, place);
+  }
+  if (version >= kBoltCircleVersion) {
+    element.bolt_circles = select_bolt_circles(database, id, place);
+  }
   element.features = std::move(rows.features);
   if (const auto defect = find_defect(element)) {
     throw Error(ErrorCode::FileMalformed, place + ": " + *defect);

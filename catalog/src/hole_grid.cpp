@@ -10,6 +10,7 @@
 
 #include "canonical_order.h"
 #include "dowel/kernel/tolerance.h"
+#include "equal_holes.h"
 
 namespace dowel {
 namespace {
@@ -50,17 +51,6 @@ bool are_equal_segments(const HoleSegment& a, const HoleSegment& b) {
   return a.type == b.type && near(a.diameter_mm, b.diameter_mm) &&
          near(a.diameter_end_mm, b.diameter_end_mm) && near(a.from_mm, b.from_mm) &&
          near(a.to_mm, b.to_mm);
-}
-
-/// Same shape, same direction, same opening plane.
-bool are_equal_holes(const Feature& a, const Feature& b) {
-  return a.through == b.through && a.blind_end == b.blind_end &&
-         a.direction.dot(b.direction) > 0.0 &&
-         a.direction.cross(b.direction).norm() <= kCoaxial_rad &&
-         std::abs(a.direction.dot(b.origin - a.origin)) <= kSameFeature_mm &&
-         std::abs(a.depth_mm - b.depth_mm) <= kSameFeature_mm &&
-         std::equal(a.segments.begin(), a.segments.end(), b.segments.begin(), b.segments.end(),
-                    are_equal_segments);
 }
 
 /// Gaps between neighbours along axis `d`: of all lines, and within the lines across it (where a
@@ -278,6 +268,16 @@ std::vector<std::vector<std::size_t>> equal_holes(const std::vector<Feature>& ho
 }
 
 }  // namespace
+
+bool are_equal_holes(const Feature& a, const Feature& b) {
+  return a.through == b.through && a.blind_end == b.blind_end &&
+         a.direction.dot(b.direction) > 0.0 &&
+         a.direction.cross(b.direction).norm() <= kCoaxial_rad &&
+         std::abs(a.direction.dot(b.origin - a.origin)) <= kSameFeature_mm &&
+         std::abs(a.depth_mm - b.depth_mm) <= kSameFeature_mm &&
+         std::equal(a.segments.begin(), a.segments.end(), b.segments.begin(), b.segments.end(),
+                    are_equal_segments);
+}
 
 ViewFrame view_frame(const Eigen::Vector3d& normal) {
   const Eigen::Vector3d up =

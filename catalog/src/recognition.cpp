@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "dowel/catalog/metric_thread.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/tolerance.h"
 #include "face_graph.h"
@@ -97,6 +98,10 @@ std::vector<Feature> recognise_features(const FacetedSolid& solid) {
   std::vector<Feature> holes;
   for (const HoleFinding& finding : findings) {
     holes.push_back(finding.feature);
+    if (const auto* const thread = likely_thread_of_hole(finding.feature.diameter_mm)) {
+      holes.back().thread = thread->name;
+      holes.back().thread_is_guess = true;
+    }
     if (!finding.entry_face) continue;
     const auto name = name_of_face.find(*finding.entry_face);
     if (name != name_of_face.end()) holes.back().entry = name->second;

@@ -14,10 +14,18 @@ inline constexpr std::int32_t kCatalogApplicationId = 0x44574C43;
 /// this one when they are opened for writing.
 ///  1: the first
 ///  2: `slot`
-inline constexpr std::int32_t kCatalogVersion = 2;
+///  3: `element_design`, `feature_design`
+///  4: `bolt_circle`, `bolt_circle_hole`
+inline constexpr std::int32_t kCatalogVersion = 4;
 
 /// The first version that keeps the shape of slots.
 inline constexpr std::int32_t kSlotVersion = 2;
+
+/// The first version that keeps what the maker of an element states about it.
+inline constexpr std::int32_t kDesignVersion = 3;
+
+/// The first version that keeps bolt circles.
+inline constexpr std::int32_t kBoltCircleVersion = 4;
 
 struct SchemaTable {
   const char* name;
@@ -25,10 +33,9 @@ struct SchemaTable {
   std::int32_t since = 1;  ///< version that brought it
 };
 
-/// Every table that a catalogue of this version has. `element`, `feature`, `hole_segment` and
-/// `slot` are
-/// columns rather than documents so that rules can be written over them in SQL.
-inline constexpr std::array<SchemaTable, 6> kCatalogTables{{
+/// Every table that a catalogue of this version has. They are columns rather than documents so that
+/// rules can be written over them in SQL.
+inline constexpr std::array<SchemaTable, 10> kCatalogTables{{
     {"source", R"(CREATE TABLE source (
   id INTEGER PRIMARY KEY,
   path TEXT NOT NULL UNIQUE,
@@ -131,6 +138,55 @@ inline constexpr std::array<SchemaTable, 6> kCatalogTables{{
     ON DELETE CASCADE
 ) STRICT, WITHOUT ROWID)",
      kSlotVersion},
+    {"element_design",
+     R"(CREATE TABLE element_design (
+  element_id INTEGER PRIMARY KEY REFERENCES element (id) ON DELETE CASCADE,
+  role TEXT NOT NULL,
+  description TEXT NOT NULL,
+  material TEXT NOT NULL,
+  dimensions_by TEXT NOT NULL,
+  density_kg_per_m3 REAL NOT NULL
+) STRICT)",
+     kDesignVersion},
+    {"feature_design",
+     R"(CREATE TABLE feature_design (
+  element_id INTEGER NOT NULL,
+  feature_position INTEGER NOT NULL,
+  use TEXT NOT NULL,
+  thread TEXT NOT NULL,
+  thread_is_guess INTEGER NOT NULL CHECK (thread_is_guess IN (0, 1)),
+  fit TEXT NOT NULL,
+  PRIMARY KEY (element_id, feature_position),
+  FOREIGN KEY (element_id, feature_position) REFERENCES feature (element_id, position)
+    ON DELETE CASCADE
+) STRICT, WITHOUT ROWID)",
+     kDesignVersion},
+    {"bolt_circle",
+     R"(CREATE TABLE bolt_circle (
+  element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  center_x REAL NOT NULL,
+  center_y REAL NOT NULL,
+  center_z REAL NOT NULL,
+  direction_x REAL NOT NULL,
+  direction_y REAL NOT NULL,
+  direction_z REAL NOT NULL,
+  diameter_mm REAL NOT NULL,
+  hole_diameter_mm REAL NOT NULL,
+  PRIMARY KEY (element_id, position)
+) STRICT, WITHOUT ROWID)",
+     kBoltCircleVersion},
+    {"bolt_circle_hole",
+     R"(CREATE TABLE bolt_circle_hole (
+  element_id INTEGER NOT NULL,
+  circle_position INTEGER NOT NULL,
+  position INTEGER NOT NULL,
+  hole TEXT NOT NULL,
+  PRIMARY KEY (element_id, circle_position, position),
+  FOREIGN KEY (element_id, circle_position) REFERENCES bolt_circle (element_id, position)
+    ON DELETE CASCADE
+) STRICT, WITHOUT ROWID)",
+     kBoltCircleVersion},
     {"content", R"(CREATE TABLE content (
   element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
   kind TEXT NOT NULL CHECK (kind IN ('facets', 'brep')),

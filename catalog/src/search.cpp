@@ -16,11 +16,12 @@ namespace dowel {
 namespace {
 
 using Quantity = SearchCondition::Quantity;
+using What = SearchLabel::What;
 
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kOperators = "<>=";
 
-constexpr std::array<std::pair<std::string_view, Quantity>, 14> kQuantities{{
+constexpr std::array<std::pair<std::string_view, Quantity>, 16> kQuantities{{
     {"length", Quantity::Length},
     {"l", Quantity::Length},
     {"width", Quantity::Width},
@@ -34,7 +35,18 @@ constexpr std::array<std::pair<std::string_view, Quantity>, 14> kQuantities{{
     {"d", Quantity::Diameter},
     {"depth", Quantity::Depth},
     {"holes", Quantity::Holes},
+    {"circle", Quantity::Circle},
     {"volume", Quantity::Volume},
+    {"mass", Quantity::Mass},
+}};
+
+constexpr std::array<std::pair<std::string_view, What>, 6> kLabels{{
+    {"thread", What::Thread},
+    {"hole", What::HoleThread},
+    {"shaft", What::ShaftThread},
+    {"fit", What::Fit},
+    {"role", What::Role},
+    {"material", What::Material},
 }};
 
 /// ASCII only: names in other scripts are matched as they stand.
@@ -50,34 +62,43 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
+/// A word or comparison of a query, and where it begins in the terms with a blank between each.
+struct Token {
+  std::string text;
+  std::size_t at = 0;
+};
+
 /// All terms as one list of tokens; blanks around operators are dropped, so that `height >= 80` is
 /// one token however the shell split it.
-std::vector<std::string> tokens_of(std::span<const std::string> terms) {
-  std::vector<std::string> tokens;
-  bool expects_number = false;
+std::vector<Token> tokens_of(std::span<const std::string> terms) {
+  std::vector<Token> tokens;
+  bool expects_value = false;
+  std::size_t term_at = 0;
   for (const std::string& term : terms) {
     std::size_t at = 0;
     while ((at = term.find_first_not_of(kBlanks, at)) != std::string::npos) {
       const std::size_t end = std::min(term.find_first_of(kBlanks, at), term.size());
       const std::string word = term.substr(at, end - at);
-      const bool continues = expects_number || contains(kOperators, word.substr(0, 1));
+      const bool continues = expects_value || contains(kOperators, word.substr(0, 1));
       if (continues && !tokens.empty()) {
-        tokens.back() += word;
+        tokens.back().text += word;
       } else {
-        tokens.push_back(word);
+        tokens.push_back({word, term_at + at});
       }
-      expects_number = contains(kOperators, word.substr(word.size() - 1));
+      expects_value = contains(kOperators, word.substr(word.size() - 1));
       at = end;
     }
+    term_at += term.size() + 1;
   }
   return tokens;
 }
 
-[[noreturn]] void fail(const std::string& token, const std::string& expected) {
-  throw Error(ErrorCode::InvalidInput, "search term \"" + token + "\": expected " + expected);
+[[noreturn]] void fail(const Token& token, const std::string& expected) {
+  throw Error(ErrorCode::InvalidInput, "search query, character " + std::to_string(token.at + 1) +
+                                           ", \"" + token.text + "\": expected " + expected);
 }
 
-double parse_number(const std::string& token, std::string_view text) {
+double parse_number(const Token& token, std::string_view text) {
   double value = 0.0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
@@ -86,23 +107,42 @@ double parse_number(const std::string& token, std::string_view text) {
   return value;
 }
 
-Quantity parse_quantity(const std::string& token, std::string_view name) {
+Quantity parse_quantity(const Token& token, std::string_view name) {
   std::string known;
   for (const auto& [word, quantity] : kQuantities) {
     if (word == name) return quantity;
     if (word.size() > 1) known += (known.empty() ? "" : ", ") + std::string(word);
   }
+  for (const auto& [word, what] : kLabels) {
+    if (!contains(known, word)) known += ", " + std::string(word);
+  }
   fail(token, "one of " + known + " before the comparison");
 }
 
-SearchCondition parse_condition(const std::string& token) {
-  const std::size_t at = token.find_first_of(kOperators);
-  const std::size_t end = std::min(token.find_first_not_of(kOperators, at), token.size());
-  const std::string comparison = token.substr(at, end - at);
-  const std::string_view number = std::string_view(token).substr(end);
+/// "M12", "m12x1.5".
+bool is_thread(std::string_view text) {
+  return text.size() >= 2 && (text[0] == 'M' || text[0] == 'm') && text[1] >= '1' && text[1] <= '9';
+}
 
+/// What `name=text` asks for where that is no number: nothing where it can only be one.
+std::optional<SearchLabel> parse_label(const Token& token, std::string_view name,
+                                       const std::string& comparison, std::string_view text) {
+  const auto* const found =
+      std::ranges::find(kLabels, name, &std::pair<std::string_view, What>::first);
+  if (found == kLabels.end()) return std::nullopt;
+  const What what = found->second;
+  const bool may_be_size = what == What::HoleThread || what == What::ShaftThread;
+  if (may_be_size && !is_thread(text)) return std::nullopt;
+  if (comparison != "=" && comparison != "==") fail(token, "= after " + std::string(name));
+  if (text.empty()) fail(token, "a word after =");
+  if (what == What::Thread && !is_thread(text)) fail(token, "a thread such as M12 or M12x1.5");
+  return SearchLabel{what, what == What::Fit ? std::string(text) : lower(text)};
+}
+
+SearchCondition parse_condition(const Token& token, Quantity quantity,
+                                const std::string& comparison, std::string_view number) {
   SearchCondition condition;
-  condition.quantity = parse_quantity(token, lower(token.substr(0, at)));
+  condition.quantity = quantity;
   if (comparison == "=" || comparison == "==") {
     const std::size_t dots = number.find("..");
     const bool is_range = dots != std::string_view::npos;
@@ -124,6 +164,26 @@ SearchCondition parse_condition(const std::string& token) {
   return condition;
 }
 
+void parse_comparison(const Token& token, SearchQuery& query) {
+  const std::size_t at = token.text.find_first_of(kOperators);
+  const std::size_t end = std::min(token.text.find_first_not_of(kOperators, at), token.text.size());
+  const std::string name = lower(token.text.substr(0, at));
+  const std::string comparison = token.text.substr(at, end - at);
+  const std::string_view value = std::string_view(token.text).substr(end);
+  if (auto label = parse_label(token, name, comparison, value)) {
+    query.labels.push_back(std::move(*label));
+  } else {
+    query.conditions.push_back(
+        parse_condition(token, parse_quantity(token, name), comparison, value));
+  }
+}
+
+std::vector<double> circle_diameters_mm(const Element& element) {
+  std::vector<double> result;
+  for (const BoltCircle& circle : element.bolt_circles) result.push_back(circle.diameter_mm);
+  return result;
+}
+
 /// Every value of the quantity that the element has.
 std::vector<double> values(const Element& element, Quantity quantity) {
   const Eigen::Vector3d size = 2.0 * element.obb.half_extents_mm;
@@ -136,9 +196,14 @@ std::vector<double> values(const Element& element, Quantity quantity) {
       return {size.z()};
     case Quantity::Volume:
       return {element.volume_mm3};
+    case Quantity::Mass:
+      if (const auto mass_kg = element.mass_kg()) return {*mass_kg};
+      return {};
     case Quantity::Holes:
       return {static_cast<double>(
           std::ranges::count(element.features, FeatureKind::Hole, &Feature::kind))};
+    case Quantity::Circle:
+      return circle_diameters_mm(element);
     default:
       break;
   }
@@ -168,18 +233,34 @@ bool holds(const Element& element, const SearchCondition& condition) {
   });
 }
 
+bool carries(const Element& element, const SearchLabel& label) {
+  if (label.what == What::Role) return lower(element.role) == label.text;
+  if (label.what == What::Material) return contains(lower(element.material), label.text);
+  return std::ranges::any_of(element.features, [&label](const Feature& feature) {
+    if (label.what == What::Fit) return feature.fit == label.text;
+    if (label.what == What::HoleThread && feature.kind != FeatureKind::Hole) return false;
+    if (label.what == What::ShaftThread && feature.kind != FeatureKind::Shaft) return false;
+    return !feature.thread.empty() && lower(feature.thread) == label.text;
+  });
+}
+
 /// Where a word occurs: 0 is the whole name, larger is farther from it; nothing: nowhere.
 std::optional<int> place_of(const Element& element, const std::string& word) {
   const std::string name = lower(element.name);
   if (name == word) return 0;
   if (name.starts_with(word)) return 1;
   if (contains(name, word)) return 2;
-  if (contains(lower(element.family), word)) return 3;
+  if (contains(lower(element.family), word) || contains(lower(element.role), word)) return 3;
   if (contains(to_string(element.shape), word)) return 4;
   const bool in_feature = std::ranges::any_of(element.features, [&word](const Feature& feature) {
-    return contains(lower(feature.name), word) || to_string(feature.kind) == word;
+    return contains(lower(feature.name), word) || to_string(feature.kind) == word ||
+           contains(lower(feature.use), word) || lower(feature.thread) == word;
   });
-  return in_feature ? std::optional(5) : std::nullopt;
+  if (in_feature) return 5;
+  const bool in_text = contains(lower(element.description), word) ||
+                       contains(lower(element.material), word) ||
+                       contains(lower(element.dimensions_by), word);
+  return in_text ? std::optional(6) : std::nullopt;
 }
 
 /// Sum of the places of all words; nothing where the element does not match.
@@ -192,7 +273,9 @@ std::optional<int> distance_from(const Element& element, const SearchQuery& quer
   }
   const bool all_hold = std::ranges::all_of(
       query.conditions, [&element](const auto& condition) { return holds(element, condition); });
-  return all_hold ? std::optional(sum) : std::nullopt;
+  const bool all_carried = std::ranges::all_of(
+      query.labels, [&element](const auto& label) { return carries(element, label); });
+  return all_hold && all_carried ? std::optional(sum) : std::nullopt;
 }
 
 /// Insertions, deletions, replacements and swaps of neighbours that turn `a` into `b` (optimal
@@ -237,11 +320,18 @@ std::optional<std::pair<int, std::size_t>> likeness(std::string_view name,
 
 SearchQuery parse_query(std::span<const std::string> terms) {
   SearchQuery query;
-  for (const std::string& token : tokens_of(terms)) {
-    if (token.find_first_of(kOperators) == std::string::npos) {
-      query.words.push_back(lower(token));
+  const std::vector<Token> tokens = tokens_of(terms);
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const std::string word = lower(tokens[i].text);
+    if (tokens[i].text.find_first_of(kOperators) != std::string::npos) {
+      parse_comparison(tokens[i], query);
+    } else if ((word == "hole" || word == "shaft") && i + 1 < tokens.size() &&
+               is_thread(tokens[i + 1].text) &&
+               tokens[i + 1].text.find_first_of(kOperators) == std::string::npos) {
+      query.labels.push_back(
+          {word == "hole" ? What::HoleThread : What::ShaftThread, lower(tokens[++i].text)});
     } else {
-      query.conditions.push_back(parse_condition(token));
+      query.words.push_back(word);
     }
   }
   return query;

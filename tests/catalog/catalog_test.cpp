@@ -121,6 +121,11 @@ TEST_CASE("What is put into a catalogue is found again to the bit") {
   CHECK(found->sha256 == put_in.sha256);
   CHECK(found->unit_in_file == put_in.unit_in_file);
   CHECK(found->licence == put_in.licence);
+  CHECK(found->role == put_in.role);
+  CHECK(found->description == put_in.description);
+  CHECK(found->material == put_in.material);
+  CHECK(found->dimensions_by == put_in.dimensions_by);
+  CHECK(found->mass_kg().value() == Approx(64000.0 * 7850.0e-9).epsilon(1e-12));
   CHECK(found->shape == put_in.shape);
   CHECK(found->solids == put_in.solids);
   CHECK(found->volume_mm3 == put_in.volume_mm3);
@@ -154,7 +159,18 @@ TEST_CASE("What is put into a catalogue is found again to the bit") {
     CHECK(actual.slot == expected.slot);
     CHECK(actual.area_mm2 == expected.area_mm2);
     CHECK(actual.faces == expected.faces);
+    CHECK(actual.use == expected.use);
+    CHECK(actual.thread == expected.thread);
+    CHECK(actual.thread_is_guess == expected.thread_is_guess);
+    CHECK(actual.fit == expected.fit);
   }
+  REQUIRE(found->bolt_circles.size() == 1);
+  const dowel::BoltCircle& circle = found->bolt_circles.front();
+  CHECK(circle.center == put_in.bolt_circles.front().center);
+  CHECK(circle.direction == put_in.bolt_circles.front().direction);
+  CHECK(circle.diameter_mm == 50.0);
+  CHECK(circle.hole_diameter_mm == 12.0);
+  CHECK(circle.holes == std::vector<std::string>{"cb1", "A1", "cb1"});
   CHECK(dowel::to_blob(*catalog.solid("H40/block")) == dowel::to_blob(record.solid));
   CHECK(catalog.brep("H40/block") == record.brep);
 }
@@ -165,6 +181,7 @@ TEST_CASE("An element without colour, features and boundary representation is ke
   record.brep.clear();
   record.element.colour.reset();
   record.element.features.clear();
+  record.element.bolt_circles.clear();
   Catalog catalog = writable(folder / "c.db");
   put(catalog, "bare.off", {record});
   CHECK(catalog.brep("bare").empty());
@@ -334,9 +351,9 @@ TEST_CASE("What is no catalogue is refused by name", "[fault]") {
   }
   SECTION("a catalogue of a newer version") {
     writable(file);
-    execute(file, "PRAGMA user_version = 3");
+    execute(file, "PRAGMA user_version = 9");
     CHECK(refused(read_only) == ErrorCode::SchemaMismatch);
-    CHECK_THAT(error_of([&] { readable(file); }).what(), Catch::Contains("version 3"));
+    CHECK_THAT(error_of([&] { readable(file); }).what(), Catch::Contains("version 9"));
     CHECK(refused(read_write) == ErrorCode::SchemaMismatch);
   }
   SECTION("a catalogue with another table") {
@@ -451,7 +468,10 @@ TEST_CASE("Rows that make no sound element are reported with the element's name"
       "UPDATE feature SET direction_x = 0.5", "UPDATE feature SET name = '' WHERE position = 1",
       "UPDATE hole_segment SET to_mm = -1.0", "UPDATE slot SET run_x = 0.5",
       "UPDATE slot SET length_mm = -1.0", "UPDATE slot SET nominal_mm = -14",
-      "UPDATE slot SET feature_position = 0");
+      "UPDATE slot SET feature_position = 0", "UPDATE element_design SET density_kg_per_m3 = -1.0",
+      "UPDATE element_design SET density_kg_per_m3 = 9e999",
+      "UPDATE bolt_circle SET direction_x = 2.0", "UPDATE bolt_circle SET diameter_mm = -1.0",
+      "UPDATE bolt_circle_hole SET hole = 'pin1' WHERE position = 2");
   CAPTURE(edit);
   execute(file, edit);
   const Catalog catalog = readable(file);
@@ -464,7 +484,10 @@ TEST_CASE("A catalogue of the first version is read, and brought up to this one 
   const TemporaryFolder folder;
   const auto file = folder / "c.db";
   Catalog(file, Catalog::Access::ReadWrite).put(block_source(), std::vector{block_record("a")});
-  execute(file, "DROP TABLE slot; PRAGMA user_version = 1");
+  execute(file,
+          "DROP TABLE bolt_circle_hole; DROP TABLE bolt_circle;"
+          "DROP TABLE slot; DROP TABLE feature_design; DROP TABLE element_design;"
+          "PRAGMA user_version = 1");
   const std::string before = read_text(file);
   {
     const Catalog catalog = readable(file);
@@ -472,6 +495,10 @@ TEST_CASE("A catalogue of the first version is read, and brought up to this one 
     REQUIRE(found);
     REQUIRE(found->find_feature("slot1") != nullptr);
     CHECK_FALSE(found->find_feature("slot1")->slot);
+    CHECK(found->role.empty());
+    CHECK(found->bolt_circles.empty());
+    CHECK_FALSE(found->mass_kg());
+    CHECK(found->find_feature("pin1")->fit.empty());
   }
   CHECK(read_text(file) == before);
   {
@@ -480,8 +507,10 @@ TEST_CASE("A catalogue of the first version is read, and brought up to this one 
   }
   const Catalog catalog = readable(file);
   CHECK_FALSE(catalog.find("a")->find_feature("slot1")->slot);
+  CHECK(catalog.find("a")->role.empty());
   CHECK(catalog.find("b")->find_feature("slot1")->slot ==
         block_record("b").element.features[4].slot);
+  CHECK(catalog.find("b")->role == "locator");
 }
 
 TEST_CASE("A second writer waits, then says who is in the way", "[fault]") {

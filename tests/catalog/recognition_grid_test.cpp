@@ -108,6 +108,79 @@ TEST_CASE("six holes on a circle are no grid") {
   CHECK(names(holes_of(plate(drilled))) == "h1 h2 h3 h4 h5 h6");
 }
 
+TEST_CASE("a bolt circle tells its pitch circle, its count and its holes, from the right around") {
+  struct Case {
+    int count;
+    double diameter_mm;
+    double turned_rad;
+  };
+  const Case c = GENERATE(Case{3, 60.0, 0.4}, Case{4, 66.675, 0.785398}, Case{5, 90.0, 0.0},
+                          Case{6, 120.0, 0.0}, Case{7, 80.0, 0.5}, Case{12, 180.0, 0.1});
+  CAPTURE(c.count);
+  const Eigen::Vector2d center(35.0, -20.0);
+  std::vector<testing::DrilledHole> drilled{{-150.0, -100.0, 5.0}, {150.0, 100.0, 5.0}};
+  for (int i = 0; i < c.count; ++i) {
+    const double a = c.turned_rad + 2.0 * std::numbers::pi * i / c.count;
+    drilled.push_back({center.x() + 0.5 * c.diameter_mm * std::cos(a),
+                       center.y() + 0.5 * c.diameter_mm * std::sin(a), 5.0});
+  }
+  drilled.push_back({center.x(), center.y(), 8.0});
+  const std::vector<Feature> holes = holes_of(plate(drilled));
+  const std::vector<BoltCircle> circles = find_bolt_circles(holes);
+  REQUIRE(circles.size() == 1);
+  CHECK(circles[0].diameter_mm == Approx(c.diameter_mm).margin(1.0e-6));
+  CHECK(circles[0].hole_diameter_mm == Approx(10.0).margin(1.0e-9));
+  CHECK((circles[0].center - Eigen::Vector3d(center.x(), center.y(), 20.0)).norm() < 1.0e-6);
+  CHECK(circles[0].direction == Eigen::Vector3d(0.0, 0.0, -1.0));
+  REQUIRE(circles[0].holes.size() == static_cast<std::size_t>(c.count));
+  for (int i = 0; i < c.count; ++i) {
+    const testing::DrilledHole& hole = drilled[static_cast<std::size_t>(i) + 2];
+    const auto& name = circles[0].holes[static_cast<std::size_t>(i)];
+    CHECK((position(holes, name) - Eigen::Vector3d(hole.x, hole.y, 20.0)).norm() < 1.0e-6);
+  }
+}
+
+TEST_CASE("two flanges on one plate are two circles") {
+  std::vector<testing::DrilledHole> drilled;
+  for (int i = 0; i < 8; ++i) {
+    const double a = std::numbers::pi / 4.0 * i;
+    drilled.push_back({-90.0 + 40.0 * std::cos(a), 40.0 * std::sin(a), 4.0});
+    if (i % 2 == 0) drilled.push_back({100.0 + 30.0 * std::cos(a), 30.0 * std::sin(a), 4.0});
+  }
+  const std::vector<BoltCircle> circles = find_bolt_circles(holes_of(plate(drilled)));
+  REQUIRE(circles.size() == 2);
+  CHECK(circles[0].holes.size() == 8);
+  CHECK(circles[0].diameter_mm == Approx(80.0).margin(1.0e-6));
+  CHECK(circles[1].holes.size() == 4);
+  CHECK(circles[1].diameter_mm == Approx(60.0).margin(1.0e-6));
+}
+
+TEST_CASE("what is no bolt circle is none") {
+  SECTION("a grid") {
+    CHECK(find_bolt_circles(holes_of(plate(testing::hole_grid(4, 3, 40.0, 6.0)))).empty());
+  }
+  SECTION("the corners of a rectangle") {
+    CHECK(
+        find_bolt_circles(
+            holes_of(plate(
+                {{-60.0, -30.0, 5.0}, {60.0, -30.0, 5.0}, {60.0, 30.0, 5.0}, {-60.0, 30.0, 5.0}})))
+            .empty());
+  }
+  SECTION("holes on a circle, not evenly spaced or not alike") {
+    std::vector<testing::DrilledHole> drilled;
+    for (const double a : {0.0, 1.1, 2.0, 4.0}) {
+      drilled.push_back({60.0 * std::cos(a), 60.0 * std::sin(a), 5.0});
+    }
+    CHECK(find_bolt_circles(holes_of(plate(drilled))).empty());
+    drilled.clear();
+    for (int i = 0; i < 4; ++i) {
+      const double a = 0.5 * std::numbers::pi * i;
+      drilled.push_back({60.0 * std::cos(a), 60.0 * std::sin(a), i == 0 ? 5.1 : 5.0});
+    }
+    CHECK(find_bolt_circles(holes_of(plate(drilled))).empty());
+  }
+}
+
 TEST_CASE("rows go on after Z with AA") {
   const std::vector<Feature> holes = holes_of(
       testing::plate_with_holes({40.0, 300.0, 10.0}, testing::hole_grid(2, 28, 10.0, 3.0), 6));

@@ -23,6 +23,11 @@ inline ElementRecord block_record(const std::string& name, double length_mm = 80
   element.sha256 = std::string(64, 'a');
   element.unit_in_file = "inch";
   element.licence = "CC0-1.0";
+  element.role = "locator";
+  element.description = "a block with a pin";
+  element.material = "steel C45";
+  element.dimensions_by = "like DIN 6321";
+  element.density_kg_per_m3 = 7850.0;
   element.shape = ShapeClass::BlockCylinder;
   element.solids = 1;
   element.volume_mm3 = length_mm * 800.0;
@@ -53,11 +58,15 @@ inline ElementRecord block_record(const std::string& name, double length_mm = 80
   through.blind_end = "";
   through.segments = {};
   through.faces = {};
+  through.thread = "M12";
+  through.thread_is_guess = true;
   Feature pin;
   pin.name = "pin1";
   pin.kind = FeatureKind::Shaft;
   pin.diameter_mm = 11.99;
   pin.depth_mm = 25.0;
+  pin.use = "head";
+  pin.fit = "g6";
   Feature top;
   top.name = "top";
   top.kind = FeatureKind::Face;
@@ -79,6 +88,8 @@ inline ElementRecord block_record(const std::string& name, double length_mm = 80
                         .undercut_height_mm = 10.0,
                         .nominal_mm = 14};
   element.features = {bore, through, pin, top, slot};
+  // No such circle is found, but it is kept.
+  element.bolt_circles = {{{1.0, 2.0, 3.0}, {0.0, 0.6, -0.8}, 50.0, 12.0, {"cb1", "A1", "cb1"}}};
   return record;
 }
 

@@ -94,6 +94,41 @@ TEST_CASE("A term that makes no sense is an error that names it", "[fault]") {
   }
 }
 
+TEST_CASE("What a maker states is found by words and by what it is") {
+  Element riser = dowel::testing::block_record("riser").element;
+  riser.role = "riser";
+  riser.description = "carries one node";
+  riser.features[1].fit = "H7";  // A1, with a thread M12
+  CHECK(finds(riser, {"riser hole M12"}));
+  CHECK(finds(riser, {"hole=m12"}));
+  CHECK(finds(riser, {"thread=M12"}));
+  CHECK(finds(riser, {"M12"}));
+  CHECK_FALSE(finds(riser, {"shaft M12"}));
+  CHECK_FALSE(finds(riser, {"hole M16"}));
+  CHECK_FALSE(finds(riser, {"thread=M1"}));
+  CHECK_FALSE(finds(riser, {"thread=M12x1.5"}));
+  CHECK(finds(riser, {"hole", "steel"}));  // no thread follows: two words
+  CHECK(finds(riser, {"fit=H7"}));
+  CHECK(finds(riser, {"fit=g6"}));
+  CHECK_FALSE(finds(riser, {"fit=h7"}));
+  CHECK(finds(riser, {"role=Riser", "material=c45"}));
+  CHECK_FALSE(finds(riser, {"role=rise"}));
+  CHECK(finds(riser, {"node"}));
+  CHECK(finds(riser, {"6321"}));
+  CHECK(finds(riser, {"mass>0.502", "mass<0.503"}));  // 64 cm3 of steel: 0.5024 kg
+  riser.density_kg_per_m3 = 0.0;
+  CHECK_FALSE(finds(riser, {"mass>=0"}));
+}
+
+TEST_CASE("Errors name the place in the query", "[fault]") {
+  CHECK_THROWS_WITH(parse_query(Words{"riser", "height>=x"}),
+                    "search query, character 7, \"height>=x\": expected a number instead of \"x\"");
+  CHECK_THROWS_WITH(parse_query(Words{"riser thread=12"}),
+                    Catch::Contains("character 7") && Catch::Contains("M12x1.5"));
+  CHECK_THROWS_WITH(parse_query(Words{"role>3"}), Catch::Contains("expected = after role"));
+  CHECK_THROWS_WITH(parse_query(Words{"role="}), Catch::Contains("a word after ="));
+}
+
 TEST_CASE("A search gives those that match, names before families before features") {
   const dowel::testing::TemporaryFolder folder;
   dowel::Catalog catalog(folder / "c.db", dowel::Catalog::Access::ReadWrite);

@@ -1,34 +1,13 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "dowel/catalog/element.h"
+#include "dowel/catalog/metric_thread.h"
 #include "dowel/collision/scene.h"
 #include "dowel/kernel/pose.h"
 
 namespace dowel {
-
-/// ISO metric coarse thread. An external thread is modelled as a cylinder of nominal diameter, an
-/// internal one as a cylinder between its minor diameter and its tap drill.
-struct MetricThread {
-  double nominal_mm = 0.0;
-  double pitch_mm = 0.0;
-  double tap_drill_mm = 0.0;
-
-  /// D1 of the internal thread.
-  double minor_mm() const { return nominal_mm - 1.0825 * pitch_mm; }
-};
-
-/// M3 to M24, by diameter. Source: ISO 261 (pitches), ISO 2306 (tap drills).
-std::span<const MetricThread> metric_threads();
-
-/// The thread that a cylinder of `shaft_diameter_mm` can stand for; nothing where it is of no
-/// nominal diameter.
-const MetricThread* thread_of_shaft(double shaft_diameter_mm);
-
-/// True where a bore of `hole_diameter_mm` is a core hole for the thread of the shaft.
-bool forms_thread(double shaft_diameter_mm, double hole_diameter_mm);
 
 /// How a shaft goes with a hole on the same axis, where both are placed.
 struct AxisFit {

@@ -26,6 +26,15 @@ struct TriangleCounts {
   std::uint32_t other = 0;
 };
 
+/// Three or more equal holes evenly spaced on a circle of their common opening plane.
+struct BoltCircle {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();      ///< in the opening plane
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the holes, into the material
+  double diameter_mm = 0.0;                              ///< of the pitch circle
+  double hole_diameter_mm = 0.0;
+  std::vector<std::string> holes;  ///< names of the holes, around the circle
+};
+
 /// One catalogue entry without its heavy parts (facets, boundary representation), which the
 /// catalogue loads on demand. Lengths in mm, all in the element's frame.
 struct Element {
@@ -35,6 +44,11 @@ struct Element {
   std::string sha256;        ///< of that file, lower-case hex
   std::string unit_in_file;  ///< "mm", "inch", "m", …
   std::string licence;
+  std::string role;           ///< as stated by its maker: "base plate", "fastener"; may be empty
+  std::string description;    ///< one line by its maker; may be empty
+  std::string material;       ///< "steel C45"; may be empty
+  std::string dimensions_by;  ///< where its dimensions come from: "like ISO 4762"; may be empty
+  double density_kg_per_m3 = 0.0;  ///< of its material; 0: not known
   ShapeClass shape = ShapeClass::Compound;
   std::uint32_t solids = 0;
   double volume_mm3 = 0.0;   ///< of the exact solid
@@ -45,6 +59,10 @@ struct Element {
   double facet_error_mm = 0.0;                  ///< largest over the faces
   std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
   std::vector<Feature> features;
+  std::vector<BoltCircle> bolt_circles;
+
+  /// Mass by volume and density; nothing where the density is not known.
+  std::optional<double> mass_kg() const;
 
   /// The feature called `name`; nothing where there is none.
   const Feature* find_feature(std::string_view feature_name) const;

@@ -69,7 +69,12 @@ struct Feature {
   std::vector<HoleSegment> segments;  ///< hole: by depth, from the opening
   std::optional<SlotShape> slot;      ///< slot, where it is known
   double area_mm2 = 0.0;              ///< face
-  std::vector<std::uint32_t> faces;   ///< faces of the FacetedSolid that make it up, sorted
+  std::string use;  ///< what its maker calls it: "shank", "rest"; empty where nobody says
+  std::string
+      thread;  ///< hole, shaft: ISO metric thread in or on it: "M12", "M12x1.5"; may be empty
+  bool thread_is_guess = false;  ///< nobody states the thread; size and shape make it likely
+  std::string fit;  ///< ISO 286 class of its diameter or width as stated: "H7", "g6"; may be empty
+  std::vector<std::uint32_t> faces;  ///< faces of the FacetedSolid that make it up, sorted
 };
 
 }  // namespace dowel

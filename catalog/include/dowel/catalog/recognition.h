@@ -13,6 +13,11 @@ namespace dowel {
 /// the rules.
 std::vector<Feature> recognise_features(const FacetedSolid& solid);
 
+/// Circles of equal holes among named features, those of one opening plane: evenly spaced, three or
+/// more. Holes of a grid are on none; of circles that share holes the one with more of them counts.
+/// Their holes are listed from the right around, seen against their direction.
+std::vector<BoltCircle> find_bolt_circles(const std::vector<Feature>& features);
+
 ShapeClass classify_shape(const FacetedSolid& solid, const std::vector<Feature>& features);
 
 /// Class of every face: planar faces are Plane, curved walls of holes are Hole, the rest Other.

@@ -21,27 +21,46 @@ struct SearchCondition {
     Hole,      ///< mm, diameter of some cylinder of some hole
     Shaft,     ///< mm, diameter of some shaft
     Slot,      ///< mm, width of some slot
-    Diameter,  ///< mm, either of the two
+    Diameter,  ///< mm, either of hole and shaft
     Depth,     ///< mm, of some hole
     Holes,     ///< how many holes it has
-    Volume     ///< mm^3
+    Circle,    ///< mm, pitch circle diameter of some bolt circle
+    Volume,    ///< mm^3
+    Mass       ///< kg; an element without a density has none
   };
   Quantity quantity = Quantity::Length;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// All of it must hold. Words are lower case; each must occur in the element's name, family, shape
-/// class or in the name of one of its features, whatever the case there.
+/// A word that the element, or some feature of it, must carry.
+struct SearchLabel {
+  enum class What {
+    Thread,       ///< of some hole or shaft, stated or likely
+    HoleThread,   ///< of some hole
+    ShaftThread,  ///< of some shaft
+    Fit,          ///< ISO 286 class of some feature, in its case: H7 is a hole's, h7 a shaft's
+    Role,         ///< of the element
+    Material      ///< of the element; a part of it will do
+  };
+  What what = What::Thread;
+  std::string text;  ///< but for Fit in lower case
+};
+
+/// All of it must hold. Words are lower case; each must occur in the element's name, family, role,
+/// shape class, description, material or source of dimensions, or in the name, use, thread or kind
+/// of one of its features, whatever the case there.
 struct SearchQuery {
   std::vector<std::string> words;
   std::vector<SearchCondition> conditions;
+  std::vector<SearchLabel> labels;
 };
 
-/// Reads terms as a user types them: words, and `height>=80`, `hole=12`, `d<10`, `length=80..120`.
-/// Lengths are mm and compared within kCoincident_mm, so that a riser of 80 mm is one of `>=80`,
-/// whatever rounding its box carries. Throws Error{InvalidInput} naming the term and what is
-/// expected.
+/// Reads terms as a user types them: words, and `height>=80`, `hole=12`, `d<10`, `length=80..120`,
+/// `mass<=2`, `thread=M12`, `fit=H7`, `role=clamp`. `hole M12` is `hole=M12`: a hole with that
+/// thread. Lengths are mm and compared within kCoincident_mm, so that a riser of 80 mm is one of
+/// `>=80`, whatever rounding its box carries. Throws Error{InvalidInput} naming the term, its place
+/// in the query and what is expected.
 SearchQuery parse_query(std::span<const std::string> terms);
 
 bool matches(const Element& element, const SearchQuery& query);
