@@ -64,11 +64,11 @@ const MetricThread* likely_thread_of_hole(double hole_diameter_mm) {
 }
 
 const MetricThread* likely_thread_of_shaft(double shaft_diameter_mm, double end_diameter_mm) {
-  const MetricThread* const thread = thread_of_shaft(shaft_diameter_mm);
-  if (thread == nullptr) return nullptr;
   // Turned to the pitch at least: an edge broken on a pin is shallower.
-  const bool is_deep = end_diameter_mm <= thread->nominal_mm - thread->pitch_mm + kCoaxial_mm;
-  return is_deep ? thread : nullptr;
+  return first_where([=](const MetricThread& thread) {
+    return has_nominal(thread, shaft_diameter_mm) &&
+           end_diameter_mm <= thread.nominal_mm - thread.pitch_mm + kCoaxial_mm;
+  });
 }
 
 bool forms_thread(double shaft_diameter_mm, double hole_diameter_mm) {

@@ -33,8 +33,10 @@ double chamfered_diameter_mm(const std::vector<Band>& bands, std::size_t i, std:
   return result_mm;
 }
 
-/// The thread that a shaft likely is, by a chamfer at either end.
+/// The thread that a shaft likely is, by a chamfer at either end. Discs and rings are none.
 const MetricThread* likely_thread(const std::vector<Band>& bands, std::size_t i) {
+  constexpr double kShortest = 0.75;  // in diameters
+  if (bands[i].length_mm() < kShortest * 2.0 * bands[i].radius_mm[0]) return nullptr;
   for (const std::size_t end : {0U, 1U}) {
     if (const MetricThread* const thread = likely_thread_of_shaft(
             2.0 * bands[i].radius_mm[0], chamfered_diameter_mm(bands, i, end))) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -12,13 +13,14 @@
 #include "dowel/catalog/recognition.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
+#include "library_manifest.h"
 #include "sha256.h"
 
 namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 2;
+constexpr int kPipelineVersion = 3;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {
@@ -102,7 +104,7 @@ std::string family_of(const std::string& name) {
 /// The element that a part makes, with what is recognised on it. Throws Error{FileMalformed} where
 /// that is not sound.
 ElementRecord make_record(ImportedPart&& part, const SourceRecord& source,
-                          const std::string& licence) {
+                          const std::string& licence, const ElementDesign* design) {
   ElementRecord record;
   Element& element = record.element;
   element.name = part.name.empty() ? std::filesystem::path(source.path).stem().string() : part.name;
@@ -120,12 +122,14 @@ ElementRecord make_record(ImportedPart&& part, const SourceRecord& source,
     element.facet_error_mm = std::max(element.facet_error_mm, face.facet_error_mm);
   }
   element.features = recognise_features(part.solid);
+  element.bolt_circles = find_bolt_circles(element.features);
   element.shape = classify_shape(part.solid, element.features);
   element.triangles = count_triangles(part.solid, classify_faces(part.solid, element.features));
   element.obb = enclosing_box(part.solid);
-  if (const auto defect = find_defect(element)) {
-    throw Error(ErrorCode::FileMalformed, "part \"" + element.name + "\": " + *defect);
-  }
+  std::optional<std::string> defect;
+  if (design != nullptr) defect = add_design(*design, element);
+  if (!defect) defect = find_defect(element);
+  if (defect) throw Error(ErrorCode::FileMalformed, "part \"" + element.name + "\": " + *defect);
   record.solid = std::move(part.solid);
   record.brep = std::move(part.brep);
   return record;
@@ -136,6 +140,7 @@ struct Job {
   Input input;
   SourceRecord source;
   std::string licence;
+  const ElementDesign* design = nullptr;  ///< where a manifest beside the file has one
   bool must_read = false;
   bool has_elements = false;  ///< in the catalogue, from an earlier build
   BuiltFile built;
@@ -175,6 +180,7 @@ class Build {
 
  private:
   Job prepare(Input&& input);
+  const LibraryManifest* manifest_of(const std::filesystem::path& file);
   bool is_unchanged(const Job& job, const SourceRecord& known) const;
   bool store(Job& job, ImportResult&& result);
   bool report_until(std::size_t end);
@@ -182,6 +188,7 @@ class Build {
   Catalog& catalog_;
   const BuildOptions& options_;
   const BuildCallback& on_file_;
+  std::map<std::filesystem::path, LibraryManifest> manifests_;  ///< by their files; jobs point here
   std::vector<Job> jobs_;
   std::vector<BuiltFile> report_;
   bool stopped_ = false;
@@ -200,6 +207,10 @@ Job Build::prepare(Input&& input) {
   job.source.settings = settings_line(options_.import);
   try {
     job.source.sha256 = sha256_of_file(job.input.path);
+    if (const LibraryManifest* const manifest = manifest_of(job.input.path)) {
+      job.design = manifest->find(job.input.path);
+      if (job.design != nullptr) job.source.settings += ", manifest " + manifest->sha256();
+    }
   } catch (const Error& error) {
     job.built.reason = error.what();
     return job;
@@ -220,6 +231,15 @@ Job Build::prepare(Input&& input) {
   }
   if (options_.licence) job.licence = *options_.licence;
   return job;
+}
+
+/// Read once, though it describes many files.
+const LibraryManifest* Build::manifest_of(const std::filesystem::path& file) {
+  const std::optional<std::filesystem::path> manifest = manifest_beside(file);
+  if (!manifest) return nullptr;
+  const auto known = manifests_.find(*manifest);
+  if (known != manifests_.end()) return &known->second;
+  return &manifests_.emplace(*manifest, LibraryManifest(*manifest)).first->second;
 }
 
 bool Build::is_unchanged(const Job& job, const SourceRecord& known) const {
@@ -246,9 +266,14 @@ bool Build::store(Job& job, ImportResult&& result) {
       break;
   }
   if (job.built.status == BuildStatus::Ok) {
+    if (job.design != nullptr && result.parts.size() != 1) {
+      job.design = nullptr;
+      job.built.warnings.push_back("library.json describes one element, but the file holds " +
+                                   std::to_string(result.parts.size()) + " parts");
+    }
     try {
       for (ImportedPart& part : result.parts) {
-        records.push_back(make_record(std::move(part), job.source, job.licence));
+        records.push_back(make_record(std::move(part), job.source, job.licence, job.design));
       }
     } catch (const std::exception& error) {
       // A part that recognition cannot take costs its file, not the build.

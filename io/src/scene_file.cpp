@@ -4,8 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <initializer_list>
-#include <set>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
@@ -13,68 +11,13 @@
 #include "dowel/io/file.h"
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/tolerance.h"
+#include "json_node.h"
 
 namespace dowel {
 namespace {
 
 using Json = nlohmann::json;
-
-/// A value of the file and how to name it in a message.
-struct Node {
-  const Json& value;
-  std::string place;  ///< "scene.json: elements[2].pose"
-
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorCode::FileMalformed, place + ": " + problem);
-  }
-  Node at(const std::string& key) const {
-    const bool at_top = place.ends_with(": scene");
-    const std::string prefix = at_top ? place.substr(0, place.size() - 5) : place + ".";
-    return {value.at(key), prefix + key};
-  }
-  Node at(std::size_t index) const {
-    return {value.at(index), place + "[" + std::to_string(index) + "]"};
-  }
-  void expect_object(std::initializer_list<std::string_view> known_keys) const {
-    if (!value.is_object()) fail(std::string("expected an object, found ") + value.type_name());
-    for (const auto& [key, ignored] : value.items()) {
-      if (std::ranges::find(known_keys, key) != known_keys.end()) continue;
-      std::string known;
-      for (const std::string_view name : known_keys) {
-        if (!known.empty()) known += ", ";
-        known += name;
-      }
-      fail("unknown key \"" + key + "\", expected one of: " + known);
-    }
-  }
-  bool has(const std::string& key) const { return value.contains(key); }
-  Node require(const std::string& key) const {
-    if (!has(key)) fail("the key \"" + key + "\" is missing");
-    return at(key);
-  }
-  std::string text() const {
-    if (!value.is_string()) fail(std::string("expected a text, found ") + value.type_name());
-    std::string result = value.get<std::string>();
-    if (result.empty()) fail("expected a text, found an empty one");
-    return result;
-  }
-  template <std::size_t N>
-  std::array<double, N> numbers() const {
-    if (!value.is_array() || value.size() != N) {
-      fail("expected a list of " + std::to_string(N) + " numbers");
-    }
-    std::array<double, N> result{};
-    for (std::size_t i = 0; i < N; ++i) {
-      const Node item = at(i);
-      if (!item.value.is_number()) {
-        item.fail(std::string("expected a number, found ") + item.value.type_name());
-      }
-      result[i] = item.value.get<double>();
-      if (!std::isfinite(result[i])) item.fail("expected a finite number");
-    }
-    return result;
-  }
-};
+using Node = JsonNode;
 
 /// A pose from seven numbers, or what is wrong with them.
 Pose checked_pose(const std::array<double, 4>& q, const std::array<double, 3>& t,
@@ -101,7 +44,7 @@ Pose read_pose(const Node& node) {
   std::array<double, 3> t{};
   if (node.has("q")) q = node.at("q").numbers<4>();
   if (node.has("t")) t = node.at("t").numbers<3>();
-  return checked_pose(q, t, node.place);
+  return checked_pose(q, t, node.place());
 }
 
 SceneBody read_body(const Node& node, const std::filesystem::path& folder) {
@@ -117,27 +60,11 @@ SceneBody read_body(const Node& node, const std::filesystem::path& folder) {
   return body;
 }
 
-Json parse(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    // The library's message reads "[json.exception...] parse error at line 3, column 7: …".
-    const std::string_view message = error.what();
-    const std::size_t start = message.find("] ");
-    throw Error(ErrorCode::FileMalformed,
-                file.string() + ": not JSON: " +
-                    std::string(start == message.npos ? message : message.substr(start + 2)));
-  } catch (const Json::exception& error) {
-    throw Error(ErrorCode::FileMalformed, file.string() + ": " + error.what());
-  }
-}
-
 }  // namespace
 
 SceneFile read_scene(const std::filesystem::path& file) {
-  const Json json = parse(file);
-  const Node scene{json, file.string() + ": scene"};
+  const Json json = parse_json_file(file);
+  const Node scene{json, file.string() + ": ", "scene", ""};
   scene.expect_object({"format", "unit", "elements", "moving"});
   const Node format = scene.require("format");
   if (format.text() != "dowel-scene/1") {

@@ -356,10 +356,11 @@ TEST_CASE("verdicts are those of OpenCascade's Booleans", "[property]") {
   RandomGeometry random(1);
   Tally tally;
   check_pairs(random, made_pool(random), kPairs * 3 / 4, tally);
-  std::vector<library::Part> parts = library::rest_buttons();
+  const library::System& h40 = library::system_called("H40-12");
+  std::vector<library::Part> parts = library::rest_buttons(h40);
   for (const auto& make : {library::vee_blocks, library::straps, library::fit_screws, library::nuts,
                            library::rest_pads, library::spacers}) {
-    for (library::Part& part : make()) parts.push_back(std::move(part));
+    for (library::Part& part : make(h40)) parts.push_back(std::move(part));
   }
   check_pairs(random, library_pool(parts, 40), kPairs / 4, tally);
   report(tally);

@@ -37,7 +37,8 @@ std::vector<Json> lines_of(const ProgramResult& result) {
 class Bench : public TemporaryFolder {
  public:
   Bench() {
-    std::vector<dowel::library::Part> parts = dowel::library::spacers();
+    std::vector<dowel::library::Part> parts =
+        dowel::library::spacers(dowel::library::system_called("H40-12"));
     std::erase_if(parts, [](const auto& part) { return part.name != kSpacer; });
     dowel::library::write_library(path() / "library", parts);
     fs::copy_file(path() / "library" / dowel::library::file_name(parts.at(0)), *this / "part.step");

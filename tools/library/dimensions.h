@@ -3,11 +3,24 @@
 #include <array>
 #include <string_view>
 
-/// The numbers of the library, one table a concept. "like ISO ..." marks numbers of general
-/// engineering knowledge that follow the standard without having been compared with its text.
+/// The numbers of standard parts and materials, one table a concept. "like ISO ..." marks numbers
+/// of general engineering knowledge that follow the standard without having been compared with its
+/// text. The numbers of the modular systems are in systems.h.
 namespace dowel::library {
 
-/// Metric coarse thread and the holes that go with it.
+/// Density: general knowledge, to about 1 %.
+struct Material {
+  std::string_view name;
+  double density_kg_per_m3;
+};
+inline constexpr Material kCastIron{"cast iron GJL-250", 7200.0};
+inline constexpr Material kSteel{"steel C45", 7850.0};
+inline constexpr Material kCaseHardenedSteel{"steel 16MnCr5, case hardened", 7850.0};
+inline constexpr Material kHardenedSteel{"steel, through hardened", 7850.0};
+inline constexpr Material kScrewSteel{"steel, property class 8.8", 7850.0};
+inline constexpr Material kAluminium{"aluminium EN AW-6082", 2700.0};
+
+/// ISO metric thread and the holes that go with it.
 struct ThreadSize {
   std::string_view name;
   double diameter_mm;
@@ -50,10 +63,10 @@ struct FastenerSize {
   WasherSize washer;
 };
 
-/// M6, M8, M10, M12. Sources: ISO 273 clearance holes; ISO 4762, 4032, 7089, DIN 6330 and 6340 as
-/// in the tables of FastenersWB, ISO 4032 widths across flats of the 2012 edition; counterbores
-/// and key depths are general knowledge.
-inline constexpr std::array<FastenerSize, 4> kFasteners{{
+/// M6 to M16 coarse, and M12x1.5. Sources: ISO 273 clearance holes; ISO 4762, 4032, 7089, DIN 6330
+/// and 6340 as in the tables of FastenersWB, ISO 4032 widths across flats of the 2012 edition;
+/// counterbores and key depths are general knowledge.
+inline constexpr std::array<FastenerSize, 6> kFasteners{{
     {{"M6", 6.0, 1.0, 4.917, 6.6, 11.0, 6.8},
      {10.0, 6.0, 5.0, 3.0},
      {5.2, 10.0, 9.0},
@@ -70,51 +83,42 @@ inline constexpr std::array<FastenerSize, 4> kFasteners{{
      {18.0, 12.0, 10.0, 6.0},
      {10.8, 18.0, 18.0},
      {13.0, 24.0, 2.5, 13.0, 35.0, 5.0}},
+    {{"M12x1.5", 12.0, 1.5, 10.376, 13.5, 20.0, 13.0},
+     {18.0, 12.0, 10.0, 6.0},
+     {10.8, 18.0, 18.0},
+     {13.0, 24.0, 2.5, 13.0, 35.0, 5.0}},
+    {{"M16", 16.0, 2.0, 13.835, 17.5, 26.0, 17.5},
+     {24.0, 16.0, 14.0, 8.0},
+     {14.8, 24.0, 24.0},
+     {17.0, 30.0, 3.0, 17.0, 45.0, 6.0}},
 }};
 
 /// The row of `kFasteners` called `thread`. Expects: there is one.
 const FastenerSize& fastener_size(std::string_view thread);
 
-/// The system H40-12: nodes every 40 mm, each a 12H7 bore over an M12 thread in one axis.
-/// Source: the common "M12/40" size of European hole systems (general knowledge).
-inline constexpr std::string_view kSystem = "H40-12";
-inline constexpr const char* kSystemSource =
-    "hole system 40 mm, M12/12H7: dimensions of this library";
-inline constexpr std::string_view kSystemThread = "M12";
-inline constexpr double kPitch_mm = 40.0;
-inline constexpr double kBore_mm = 12.0;         ///< locating bore, H7
-inline constexpr double kBoreDepth_mm = 15.0;    ///< the thread starts here, 1.25 d
-inline constexpr double kThreadDepth_mm = 36.0;  ///< full thread of a blind node ends here
-inline constexpr double kPlateHeight_mm = 40.0;
-
-/// Shank 12g6 in the middle of its tolerance: -6/-17 um (ISO 286).
-inline constexpr double kShank_mm = 11.9885;
-/// Length of the part of a spigot that locates; its thread starts below a relief of 2 mm.
-inline constexpr double kSpigotFit_mm = 13.0;
-inline constexpr double kSpigotRelief_mm = 2.0;
-inline constexpr double kSpigotReliefDiameter_mm = 9.5;
-inline constexpr double kSpigotLength_mm = 34.0;
-
-/// Thread of a fit screw: below it, the shank of 12g6 ends 25 mm above the tip.
-inline constexpr double kFitScrewThread_mm = 23.0;
-
-/// Nodes of the base plates along x and y.
-struct PlateSize {
-  int nodes_x;
-  int nodes_y;
+/// T-slot like ISO 299 (the numbers of BS 2485).
+struct TeeSlotSize {
+  double throat_mm;           ///< a
+  double undercut_mm;         ///< b, the middle of its range
+  double undercut_height_mm;  ///< c, likewise
+  double depth_mm;            ///< H, likewise
 };
-inline constexpr std::array<PlateSize, 4> kPlates{{{6, 6}, {10, 8}, {12, 10}, {15, 10}}};
+inline constexpr TeeSlotSize kTeeSlot12{12.0, 20.0, 8.5, 22.0};
+inline constexpr TeeSlotSize kTeeSlot14{14.0, 24.0, 10.0, 26.0};
 
-inline constexpr std::array<int, 3> kRiserHeights_mm{40, 80, 120};
-/// Up to three of these reach every 5 mm up to 230 mm.
-inline constexpr std::array<int, 11> kSpacerHeights_mm{5, 10, 15, 20, 25, 30, 40, 50, 60, 80, 100};
-inline constexpr std::array<int, 5> kColumnHeights_mm{50, 60, 80, 100, 120};
-inline constexpr std::array<int, 4> kRestPadHeights_mm{20, 30, 40, 50};
-inline constexpr std::array<int, 3> kRestButtonHeights_mm{25, 30, 40};
-inline constexpr std::array<int, 3> kEdgeLocatorHeights_mm{40, 60, 80};
+/// T-nut like DIN 508 (FastenersWB); the neck is 0.3 mm narrower than the slot. Where it is as high
+/// as its foot it has no neck.
+struct TeeNutSize {
+  std::string_view thread;
+  double slot_mm;
+  double width_mm;        ///< e, width and length of the foot
+  double height_mm;       ///< h
+  double foot_height_mm;  ///< k
+};
+inline constexpr double kTeeNutNeckPlay_mm = 0.3;
 
-/// Locating pin like DIN 6321, forms B (round) and C (diamond), long. The shank is pressed in: it
-/// is modelled at its nominal diameter, its hole too.
+/// Locating pin like DIN 6321, forms B (round) and C (diamond). The shank is pressed in: it is
+/// modelled at its nominal diameter, its hole too.
 struct PinSize {
   double diameter_mm;      ///< nominal, g6
   double fit_diameter_mm;  ///< middle of g6
@@ -123,34 +127,9 @@ struct PinSize {
   double shank_length_mm;
   double land_mm;  ///< form C
 };
-/// Sources: sizes as in DIN 6321 (general knowledge, size 10 confirmed by a public model); g6 from
-/// ISO 286: 6: -4/-12, 8 and 10: -5/-14, 12 and 16: -6/-17 um.
-inline constexpr std::array<PinSize, 5> kPins{{
-    {6.0, 5.992, 12.0, 4.0, 6.0, 1.0},
-    {8.0, 7.9905, 16.0, 6.0, 9.0, 1.6},
-    {10.0, 9.9905, 18.0, 6.0, 9.0, 2.5},
-    {12.0, 11.9885, 18.0, 6.0, 9.0, 2.5},
-    {16.0, 15.9885, 22.0, 8.0, 12.0, 3.5},
-}};
 /// Half angle of the lead-in cone of a pin, in degrees, and its length as a part of the head.
 inline constexpr double kPinLeadIn_deg = 15.0;
 inline constexpr double kPinLeadInShare = 1.0 / 3.0;
-
-/// Carrier of such pins: bore for the shank, depth.
-struct PinHolderSize {
-  double bore_mm;
-  double depth_mm;
-};
-inline constexpr std::array<PinHolderSize, 3> kPinHolders{{{4.0, 8.0}, {6.0, 11.0}, {8.0, 14.0}}};
-
-struct VeeBlockSize {
-  double width_mm;
-  double angle_deg;
-  double height_mm;      ///< 0.75 width and 10 mm
-  double screw_seat_mm;  ///< height of the counterbore's floor
-};
-inline constexpr std::array<VeeBlockSize, 3> kVeeBlocks{
-    {{40.0, 90.0, 40.0, 11.0}, {80.0, 90.0, 70.0, 25.0}, {80.0, 120.0, 70.0, 38.0}}};
 
 /// Clamp strap like DIN 6314 (general knowledge): slot, length, width, height.
 struct StrapSize {
@@ -160,56 +139,19 @@ struct StrapSize {
   double width_mm;
   double height_mm;
 };
-inline constexpr std::array<StrapSize, 2> kStraps{
-    {{14.0, 40.0, 100.0, 40.0, 20.0}, {14.0, 64.0, 160.0, 40.0, 25.0}}};
 
-/// Heel screws M12: hexagon head with a flat face, thread to the end.
-inline constexpr std::array<int, 4> kHeelScrewLengths_mm{45, 50, 60, 70};
-inline constexpr double kHeelScrewHead_mm = 10.0;
-inline constexpr double kHeelScrewWidth_mm = 18.0;
-
-/// Studs M12 like DIN 6379 (general knowledge): length, thread at the lower and at the upper end.
+/// Stud like DIN 6379 (general knowledge): length, thread at the lower and at the upper end.
 struct StudSize {
   double length_mm;
   double lower_thread_mm;
   double upper_thread_mm;
 };
-inline constexpr std::array<StudSize, 7> kStuds{{{50.0, 20.0, 25.0},
-                                                 {63.0, 20.0, 32.0},
-                                                 {80.0, 25.0, 40.0},
-                                                 {100.0, 25.0, 50.0},
-                                                 {125.0, 25.0, 75.0},
-                                                 {160.0, 25.0, 100.0},
-                                                 {200.0, 25.0, 125.0}}};
 
-/// Lengths of ISO 888 that the elements of the system and their stacks ask for.
-struct ScrewLengths {
-  std::string_view thread;
-  std::array<int, 16> lengths_mm;  ///< 0 ends the list
-};
-inline constexpr std::array<ScrewLengths, 4> kScrews{{
-    {"M6", {12, 16, 20, 25, 30}},
-    {"M8", {16, 20, 25, 30, 40}},
-    {"M10", {20, 25, 30, 40, 50}},
-    {"M12", {30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 120, 130, 140}},
-}};
-inline constexpr std::array<int, 11> kFitScrewLengths_mm{45, 50,  60,  65,  70, 80,
-                                                         90, 100, 110, 120, 130};
-
-/// Parallel pins, hardened, like ISO 8734, modelled at their nominal diameter.
+/// Parallel pin, hardened, like ISO 8734, modelled at its nominal diameter.
 struct DowelPinSize {
   double diameter_mm;
   double length_mm;
   double chamfer_mm;
 };
-inline constexpr std::array<DowelPinSize, 9> kDowelPins{{{6.0, 20.0, 1.0},
-                                                         {6.0, 30.0, 1.0},
-                                                         {8.0, 24.0, 1.3},
-                                                         {8.0, 40.0, 1.3},
-                                                         {10.0, 30.0, 1.6},
-                                                         {10.0, 50.0, 1.6},
-                                                         {12.0, 26.0, 1.8},
-                                                         {12.0, 30.0, 1.8},
-                                                         {12.0, 50.0, 1.8}}};
 
 }  // namespace dowel::library

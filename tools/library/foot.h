@@ -5,15 +5,16 @@
 #include <Eigen/Core>
 
 #include "part.h"
+#include "systems.h"
 
-/// What screws an element into a node: a shank of 12g6 that locates, a relief and an M12 thread,
-/// from z = 0 down.
+/// What a turned element is screwed in by: from z = 0 down, in a hole system a shank that locates
+/// (not in a slot system), a relief and a thread.
 namespace dowel::library {
 
-/// Outline of the spigot for `turned`, from its tip on the axis up to the shank at z = 0.
-std::vector<Eigen::Vector2d> spigot_outline();
+/// Outline of the foot for `turned`, from its tip on the axis up to z = 0.
+std::vector<Eigen::Vector2d> foot_outline(const System& system);
 
-/// Its features: the shank and the thread.
-std::vector<DesignedFeature> spigot_features();
+/// Its features: shank, relief and thread.
+std::vector<Feature> foot_features(const System& system);
 
 }  // namespace dowel::library

@@ -39,8 +39,9 @@ void run_library(const LibraryOptions& options) {
 
 void add_library_command(CLI::App& app, int& exit_code) {
   const auto options = std::make_shared<LibraryOptions>();
-  CLI::App* command = app.add_subcommand(
-      "library", "Writes the modular system H40-12 and sample workpieces as STEP files");
+  CLI::App* command = app.add_subcommand("library",
+                                         "Writes the modular systems H40-12, H50-16, T14 and U12 "
+                                         "and a sample workpiece as STEP files");
   command->add_option("folder", options->folder, "Folder to write to; made where it is missing")
       ->required();
   command->add_flag("--json", options->json, "Report as JSON");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dowel/catalog/element.h"
+#include "solids.h"
 #include "write_library.h"
 
 namespace dowel::library {
@@ -15,6 +16,12 @@ Json to_json(const Eigen::Vector3d& v) {
   return Json::array({v.x() + 0.0, v.y() + 0.0, v.z() + 0.0});
 }
 
+/// By the volume of the exact solid.
+double mass_kg(const Part& part) {
+  constexpr double kCubicMetres_per_mm3 = 1.0e-9;
+  return volume_mm3(part.solid) * kCubicMetres_per_mm3 * part.material.density_kg_per_m3;
+}
+
 Json to_json(const HoleSegment& segment) {
   Json json;
   json["type"] = to_string(segment.type);
@@ -25,46 +32,66 @@ Json to_json(const HoleSegment& segment) {
   return json;
 }
 
-Json to_json(const DesignedFeature& feature) {
-  const Feature& geometry = feature.geometry;
+void add_slot(const SlotShape& slot, Json& json) {
+  json["type"] = to_string(slot.type);
+  json["run"] = to_json(slot.run);
+  json["length"] = slot.length_mm;
+  json["ends"] = {to_string(slot.ends[0]), to_string(slot.ends[1])};
+  if (slot.type != SlotShape::Type::Tee) return;
+  json["throat_depth"] = slot.throat_depth_mm;
+  json["undercut_width"] = slot.undercut_width_mm;
+  json["undercut_height"] = slot.undercut_height_mm;
+  json["nominal"] = slot.nominal_mm;
+}
+
+Json to_json(const Feature& feature) {
   Json json;
-  json["name"] = geometry.name;
-  json["kind"] = to_string(geometry.kind);
-  if (geometry.kind != FeatureKind::Face) {
-    json["diameter"] = geometry.diameter_mm;
-    json["depth"] = geometry.depth_mm;
+  json["name"] = feature.name;
+  json["kind"] = to_string(feature.kind);
+  json["use"] = feature.use;
+  if (feature.kind != FeatureKind::Face) {
+    json[feature.kind == FeatureKind::Slot ? "width" : "diameter"] = feature.diameter_mm;
+    json["depth"] = feature.depth_mm;
   }
-  if (geometry.kind == FeatureKind::Hole) {
-    json["through"] = geometry.through;
-    json["blind_end"] = geometry.through ? Json() : Json(geometry.blind_end);
+  if (feature.kind == FeatureKind::Hole) {
+    json["through"] = feature.through;
+    json["blind_end"] = feature.through ? Json() : Json(feature.blind_end);
   }
-  json["axis"] = {{"origin", to_json(geometry.origin)}, {"direction", to_json(geometry.direction)}};
+  json["axis"] = {{"origin", to_json(feature.origin)}, {"direction", to_json(feature.direction)}};
   if (!feature.thread.empty()) json["thread"] = feature.thread;
   if (!feature.fit.empty()) json["fit"] = feature.fit;
-  if (geometry.kind == FeatureKind::Hole) {
+  if (feature.slot) add_slot(*feature.slot, json);
+  if (feature.kind == FeatureKind::Hole) {
     json["segments"] = Json::array();
-    for (const HoleSegment& segment : geometry.segments) {
+    for (const HoleSegment& segment : feature.segments) {
       json["segments"].push_back(to_json(segment));
     }
   }
   return json;
 }
 
+std::string family_of(const std::string& name) {
+  return name.substr(0, name.rfind('/'));
+}
+
 Json to_json(const Part& part) {
   Json json;
   json["name"] = part.name;
   json["file"] = file_name(part);
+  json["family"] = family_of(part.name);
   json["role"] = part.role;
   json["description"] = part.description;
   json["source"] = part.source;
+  json["licence"] = "Apache-2.0";
+  json["material"] = part.material.name;
+  json["density_kg_per_m3"] = part.material.density_kg_per_m3;
+  json["mass_kg"] = mass_kg(part);
   json["dimensions"] = Json::object();
   for (const Dimension& dimension : part.dimensions) {
     json["dimensions"][dimension.name] = dimension.value_mm;
   }
   json["features"] = Json::array();
-  for (const DesignedFeature& feature : part.features) {
-    json["features"].push_back(to_json(feature));
-  }
+  for (const Feature& feature : part.features) json["features"].push_back(to_json(feature));
   return json;
 }
 

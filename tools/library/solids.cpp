@@ -8,9 +8,13 @@
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakePolygon.hxx>
+#include <BRepGProp.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
 #include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <Eigen/Geometry>
+#include <GProp_GProps.hxx>
 #include <ShapeUpgrade_UnifySameDomain.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
@@ -51,6 +55,13 @@ TopoDS_Shape single_solid(const TopoDS_Shape& shape) {
   return solid;
 }
 
+/// Faces that continue each other are one face to whoever machines the part.
+TopoDS_Shape unified(const TopoDS_Shape& shape) {
+  ShapeUpgrade_UnifySameDomain unify(shape);
+  unify.Build();
+  return single_solid(unify.Shape());
+}
+
 /// Body of revolution about the line through `origin` along `axis`; `outline` as for `turned`.
 TopoDS_Shape revolved(const std::vector<Eigen::Vector2d>& outline, const gp_Pnt& origin,
                       const gp_Dir& axis) {
@@ -83,6 +94,44 @@ TopoDS_Shape drill_tool(const Feature& hole) {
   if (outline.back().x() > 0.0) outline.emplace_back(0.0, outline.back().y());
   return revolved(outline, to_pnt(hole.origin),
                   gp_Dir(hole.direction.x(), hole.direction.y(), hole.direction.z()));
+}
+
+/// What a cutter takes away along a slot with that section (half widths over depths from the floor
+/// up to the mouth), standing out where the slot is open.
+TopoDS_Shape slot_prism(const Feature& slot, const std::vector<Eigen::Vector2d>& section) {
+  const Eigen::Vector3d& run = slot.slot->run;
+  const Eigen::Vector3d across = slot.direction.cross(run);
+  const double reach_mm = slot.slot->length_mm / 2.0 + kRunOut_mm;
+  const Eigen::Vector3d start = slot.origin - reach_mm * run;
+  std::vector<gp_Pnt> corners;
+  const auto add = [&](double across_mm, double depth_mm) {
+    corners.push_back(to_pnt(start + across_mm * across + depth_mm * slot.direction));
+  };
+  for (const Eigen::Vector2d& p : section) add(p.x(), p.y());
+  for (auto p = section.rbegin(); p != section.rend(); ++p) add(-p->x(), p->y());
+  const Eigen::Vector3d sweep = 2.0 * reach_mm * run;
+  return BRepPrimAPI_MakePrism(face_of(corners), gp_Vec(sweep.x(), sweep.y(), sweep.z())).Shape();
+}
+
+TopoDS_Shape slot_tool(const Feature& slot) {
+  const SlotShape& shape = slot.slot.value();
+  const double half_mm = slot.diameter_mm / 2.0;
+  const double undercut_mm = shape.undercut_width_mm / 2.0;
+  switch (shape.type) {
+    case SlotShape::Type::Plain:
+      return slot_prism(slot, {{half_mm, slot.depth_mm}, {half_mm, -kRunOut_mm}});
+    case SlotShape::Type::Tee:
+      return slot_prism(slot, {{undercut_mm, slot.depth_mm},
+                               {undercut_mm, shape.throat_depth_mm},
+                               {half_mm, shape.throat_depth_mm},
+                               {half_mm, -kRunOut_mm}});
+    case SlotShape::Type::Through:
+      break;
+  }
+  DOWEL_EXPECTS(shape.run.x() == 1.0 && slot.direction == kDown);
+  return moved_y(oblong(slot.origin.x(), shape.length_mm, slot.diameter_mm,
+                        slot.origin.z() - slot.depth_mm - kRunOut_mm, slot.origin.z() + kRunOut_mm),
+                 slot.origin.y());
 }
 
 }  // namespace
@@ -141,10 +190,22 @@ TopoDS_Shape oblong(double center_x_mm, double overall_length_mm, double width_m
   return slot;
 }
 
+TopoDS_Shape with_flats(const TopoDS_Shape& body, double diameter_mm, double across_mm,
+                        double low_z_mm, double high_z_mm) {
+  const double out_mm = diameter_mm / 2.0 + kRunOut_mm;
+  const double flat_mm = across_mm / 2.0;
+  return cut(body, {box({-out_mm, flat_mm, low_z_mm}, {out_mm, out_mm, high_z_mm}),
+                    box({-out_mm, -out_mm, low_z_mm}, {out_mm, -flat_mm, high_z_mm})});
+}
+
 TopoDS_Shape moved_y(const TopoDS_Shape& shape, double distance_mm) {
   gp_Trsf shift;
   shift.SetTranslation(gp_Vec(0.0, distance_mm, 0.0));
   return shape.Moved(TopLoc_Location(shift));
+}
+
+TopoDS_Shape ball(double radius_mm, double center_z_mm) {
+  return BRepPrimAPI_MakeSphere(gp_Pnt(0.0, 0.0, center_z_mm), radius_mm).Solid();
 }
 
 TopoDS_Shape cut(const TopoDS_Shape& body, const std::vector<TopoDS_Shape>& tools) {
@@ -164,10 +225,7 @@ TopoDS_Shape cut(const TopoDS_Shape& body, const std::vector<TopoDS_Shape>& tool
 TopoDS_Shape fuse(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   BRepAlgoAPI_Fuse operation(a, b);
   DOWEL_EXPECTS(operation.IsDone() && !operation.HasErrors());
-  // Faces that continue each other are one face to whoever machines the part.
-  ShapeUpgrade_UnifySameDomain unify(operation.Shape());
-  unify.Build();
-  return single_solid(unify.Shape());
+  return unified(operation.Shape());
 }
 
 TopoDS_Shape common(const TopoDS_Shape& a, const TopoDS_Shape& b) {
@@ -176,12 +234,26 @@ TopoDS_Shape common(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   return single_solid(operation.Shape());
 }
 
-TopoDS_Shape drilled(const TopoDS_Shape& body, const std::vector<DesignedFeature>& features) {
-  std::vector<TopoDS_Shape> tools;
-  for (const DesignedFeature& feature : features) {
-    if (feature.geometry.kind == FeatureKind::Hole) tools.push_back(drill_tool(feature.geometry));
+double volume_mm3(const TopoDS_Shape& solid) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(solid, properties);
+  return properties.Mass();
+}
+
+TopoDS_Shape machined(const TopoDS_Shape& body, const std::vector<Feature>& features) {
+  std::vector<TopoDS_Shape> drills;
+  std::vector<TopoDS_Shape> along_x;
+  std::vector<TopoDS_Shape> across_x;
+  for (const Feature& feature : features) {
+    if (feature.kind == FeatureKind::Hole) drills.push_back(drill_tool(feature));
+    if (feature.kind != FeatureKind::Slot) continue;
+    const bool is_along_x = feature.slot.value().run.x() == 1.0;
+    (is_along_x ? along_x : across_x).push_back(slot_tool(feature));
   }
-  return cut(body, tools);
+  // Tools of one cut that meet each other cost most of its time.
+  const TopoDS_Shape part = cut(cut(cut(body, along_x), across_x), drills);
+  // Slots that cross leave their floors in pieces.
+  return across_x.empty() ? part : unified(part);
 }
 
 }  // namespace dowel::library

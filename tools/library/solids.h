@@ -34,15 +34,24 @@ TopoDS_Shape hexagon(double across_flats_mm, double low_z_mm, double high_z_mm);
 TopoDS_Shape oblong(double center_x_mm, double overall_length_mm, double width_mm, double low_z_mm,
                     double high_z_mm);
 
+/// Two flats for a wrench: a round `body` keeps `across_mm` along y between two heights.
+TopoDS_Shape with_flats(const TopoDS_Shape& body, double diameter_mm, double across_mm,
+                        double low_z_mm, double high_z_mm);
+
 /// `shape` shifted along y.
 TopoDS_Shape moved_y(const TopoDS_Shape& shape, double distance_mm);
+
+/// Ball about a point of the z axis.
+TopoDS_Shape ball(double radius_mm, double center_z_mm);
 
 TopoDS_Shape cut(const TopoDS_Shape& body, const std::vector<TopoDS_Shape>& tools);
 TopoDS_Shape fuse(const TopoDS_Shape& a, const TopoDS_Shape& b);
 TopoDS_Shape common(const TopoDS_Shape& a, const TopoDS_Shape& b);
 
-/// `body` without the material of its holes: the Hole features among `features`, which open at
-/// their origins.
-TopoDS_Shape drilled(const TopoDS_Shape& body, const std::vector<DesignedFeature>& features);
+double volume_mm3(const TopoDS_Shape& solid);
+
+/// `body` without the material of the holes and slots among `features`, which open at their
+/// origins. Expects: slots lie along x, y or z; slotted holes open upwards and run along x.
+TopoDS_Shape machined(const TopoDS_Shape& body, const std::vector<Feature>& features);
 
 }  // namespace dowel::library

@@ -41,6 +41,7 @@ Part bracket() {
   part.role = "workpiece";
   part.description = "machined block with a pocket, a step, locating holes and ledges for clamps";
   part.source = "dimensions of this library";
+  part.material = kAluminium;
   part.dimensions = {{"length", length_mm},
                      {"width", width_mm},
                      {"height", height_mm},
@@ -50,14 +51,15 @@ Part bracket() {
                      {"step_height", step_height_mm},
                      {"pocket_depth", height_mm - pocket_floor_mm}};
   part.features = {
-      fitted(plain_hole({"L1", {-60.0, -60.0, 0.0}, kUp}, 12.0, height_mm, true), "H7"),
-      fitted(plain_hole({"L2", {60.0, -60.0, 0.0}, kUp}, 12.0, height_mm, true), "H7"),
-      plain_hole({"bore", {0.0, 0.0, 0.0}, kUp}, 32.0, pocket_floor_mm, true)};
+      fitted(plain_hole({"L1", {-60.0, -60.0, height_mm}}, 12.0, height_mm, true), "H7"),
+      fitted(plain_hole({"L2", {60.0, -60.0, height_mm}}, 12.0, height_mm, true), "H7"),
+      plain_hole({"bore", {0.0, 0.0, pocket_floor_mm}}, 32.0, pocket_floor_mm, true)};
   int number = 0;
   for (const double x_mm : {-45.0, 45.0}) {
     for (const double y_mm : {-30.0, 30.0}) {
-      part.features.push_back(plain_hole({"S" + std::to_string(++number), {x_mm, y_mm, 0.0}, kUp},
-                                         9.0, pocket_floor_mm, true));
+      part.features.push_back(
+          plain_hole({"S" + std::to_string(++number), {x_mm, y_mm, pocket_floor_mm}}, 9.0,
+                     pocket_floor_mm, true));
     }
   }
   const double inner_x_mm = half_x_mm - ledge_mm;
@@ -71,7 +73,7 @@ Part bracket() {
                {half_x_mm + out_mm, half_y_mm + out_mm, height_mm + out_mm})});
   const TopoDS_Shape milled =
       cut(rough, {rounded_pocket(130.0, 90.0, 10.0, pocket_floor_mm, height_mm + out_mm)});
-  part.solid = drilled(milled, part.features);
+  part.solid = machined(milled, part.features);
   part.features.push_back(face("bottom", {0.0, 0.0, 0.0}, kDown));
   part.features.push_back(
       face("ledge-left", {-half_x_mm + ledge_mm / 2.0, 0.0, ledge_height_mm}, kUp));
@@ -86,7 +88,9 @@ Part bracket() {
 }  // namespace
 
 std::vector<Part> workpieces() {
-  return {bracket()};
+  std::vector<Part> parts{bracket()};
+  for (Part& part : parts) name_features(part);
+  return parts;
 }
 
 }  // namespace dowel::library

@@ -34,8 +34,9 @@ const MetricThread* thread_of_shaft(double shaft_diameter_mm);
 /// 0.02 mm), or that of a tap drill that tells. Nothing where it may as well be a plain bore.
 const MetricThread* likely_thread_of_hole(double hole_diameter_mm);
 
-/// The coarse thread that an outside cylinder likely is, whose free end a chamfer narrows to
+/// The thread that an outside cylinder likely is, whose free end a chamfer narrows to
 /// `end_diameter_mm`: it has a nominal diameter, and the chamfer reaches about the thread's depth.
+/// The coarse one, where the chamfer is deep enough for both.
 const MetricThread* likely_thread_of_shaft(double shaft_diameter_mm, double end_diameter_mm);
 
 /// True where a bore of `hole_diameter_mm` is a core hole for a thread, coarse or fine, of the
