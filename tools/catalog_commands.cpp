@@ -61,6 +61,7 @@ struct BuildArguments {
   unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
   bool force = false;
   std::optional<std::string> licence;
+  std::optional<std::string> assemblies;
   bool json = false;
 };
 
@@ -80,6 +81,10 @@ Json to_json(const BuiltFile& file) {
   } else {
     json["reason"] = file.reason;
   }
+  if (!file.project.empty()) {
+    json["project"] = file.project;
+    json["instances"] = file.instances;
+  }
   if (!file.warnings.empty()) json["warnings"] = file.warnings;
   json["seconds"] = file.seconds;
   return json;
@@ -98,6 +103,10 @@ std::string to_text(const BuiltFile& file) {
   }
   std::string text =
       coloured(status, colour) + "  " + printable(file.file) + ": " + printable(what);
+  if (!file.project.empty()) {
+    text += "\n           " + counted(file.instances, "instance") + " in project " +
+            printable(file.project);
+  }
   const std::size_t shown = std::min(file.warnings.size(), kShownWarnings);
   for (std::size_t i = 0; i < shown; ++i) {
     text += "\n           " + coloured("warning", kYellow) + " " + printable(file.warnings[i]);
@@ -129,6 +138,7 @@ int run_build(const BuildArguments& arguments) {
   options.jobs = arguments.jobs;
   options.force = arguments.force;
   options.licence = arguments.licence;
+  if (arguments.assemblies) options.assemblies = *arguments.assemblies;
   const std::vector<std::filesystem::path> paths(arguments.paths.begin(), arguments.paths.end());
 
   const auto start = std::chrono::steady_clock::now();
@@ -170,6 +180,10 @@ void add_build(CLI::App& catalog, int& exit_code) {
   command->add_flag("--force", arguments->force, "reads unchanged files, too");
   command->add_option("--licence", arguments->licence, "recorded with the elements")
       ->type_name("TEXT");
+  command
+      ->add_option("--assemblies", arguments->assemblies,
+                   "folder to write a project to for each file that places more than one part")
+      ->type_name("FOLDER");
   command->add_flag("--json", arguments->json, "one line of JSON a file");
   command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });
 }

@@ -13,6 +13,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "element_rows.h"
+#include "instance_rows.h"
 #include "schema.h"
 
 namespace dowel {
@@ -376,6 +377,9 @@ std::optional<SourceRecord> Catalog::source(std::string_view path) const {
                                "SELECT name FROM element WHERE source_id = ? ORDER BY position");
     elements.bind(1, source.getColumn(0).getInt64());
     while (elements.executeStep()) record.elements.push_back(elements.getColumn(0).getString());
+    record.instances =
+        select_instances(impl_->database, source.getColumn(0).getInt64(), record.elements.size(),
+                         impl_->name + ": is damaged: source \"" + record.path + "\"");
     return record;
   });
 }
@@ -384,6 +388,9 @@ std::vector<std::string> Catalog::put(const SourceRecord& source,
                                       std::span<const ElementRecord> elements) {
   DOWEL_EXPECTS(source.status == "ok" || source.status == "empty" || source.status == "failed");
   for (const ElementRecord& record : elements) DOWEL_EXPECTS(!find_defect(record.element));
+  for (const SourceInstance& instance : source.instances) {
+    DOWEL_EXPECTS(instance.element < elements.size());
+  }
 
   return guarded(impl_->name, Doing::Writing, [&] {
     SQLite::Database& database = impl_->database;
@@ -399,6 +406,7 @@ std::vector<std::string> Catalog::put(const SourceRecord& source,
       insert_content(database, id, "brep", record.brep);
       names.push_back(element.name);
     }
+    insert_instances(database, source_id, source.instances);
     transaction.commit();
     return names;
   });

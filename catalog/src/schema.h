@@ -16,7 +16,8 @@ inline constexpr std::int32_t kCatalogApplicationId = 0x44574C43;
 ///  2: `slot`
 ///  3: `element_design`, `feature_design`
 ///  4: `bolt_circle`, `bolt_circle_hole`
-inline constexpr std::int32_t kCatalogVersion = 4;
+///  5: `instance`
+inline constexpr std::int32_t kCatalogVersion = 5;
 
 /// The first version that keeps the shape of slots.
 inline constexpr std::int32_t kSlotVersion = 2;
@@ -27,6 +28,9 @@ inline constexpr std::int32_t kDesignVersion = 3;
 /// The first version that keeps bolt circles.
 inline constexpr std::int32_t kBoltCircleVersion = 4;
 
+/// The first version that keeps where assemblies have their elements.
+inline constexpr std::int32_t kInstanceVersion = 5;
+
 struct SchemaTable {
   const char* name;
   const char* sql;         ///< as sqlite_schema keeps it, to the letter
@@ -35,7 +39,7 @@ struct SchemaTable {
 
 /// Every table that a catalogue of this version has. They are columns rather than documents so that
 /// rules can be written over them in SQL.
-inline constexpr std::array<SchemaTable, 10> kCatalogTables{{
+inline constexpr std::array<SchemaTable, 11> kCatalogTables{{
     {"source", R"(CREATE TABLE source (
   id INTEGER PRIMARY KEY,
   path TEXT NOT NULL UNIQUE,
@@ -187,6 +191,22 @@ inline constexpr std::array<SchemaTable, 10> kCatalogTables{{
     ON DELETE CASCADE
 ) STRICT, WITHOUT ROWID)",
      kBoltCircleVersion},
+    {"instance",
+     R"(CREATE TABLE instance (
+  source_id INTEGER NOT NULL REFERENCES source (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  element_position INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  qw REAL NOT NULL,
+  qx REAL NOT NULL,
+  qy REAL NOT NULL,
+  qz REAL NOT NULL,
+  x_mm REAL NOT NULL,
+  y_mm REAL NOT NULL,
+  z_mm REAL NOT NULL,
+  PRIMARY KEY (source_id, position)
+) STRICT, WITHOUT ROWID)",
+     kInstanceVersion},
     {"content", R"(CREATE TABLE content (
   element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
   kind TEXT NOT NULL CHECK (kind IN ('facets', 'brep')),

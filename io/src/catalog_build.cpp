@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "assembly_project.h"
 #include "dowel/catalog/catalog.h"
 #include "dowel/catalog/recognition.h"
 #include "dowel/kernel/check.h"
@@ -20,7 +21,7 @@ namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 3;
+constexpr int kPipelineVersion = 4;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {
@@ -184,6 +185,7 @@ class Build {
   bool is_unchanged(const Job& job, const SourceRecord& known) const;
   bool store(Job& job, ImportResult&& result);
   bool report_until(std::size_t end);
+  void make_project(Job& job);
 
   Catalog& catalog_;
   const BuildOptions& options_;
@@ -288,6 +290,10 @@ bool Build::store(Job& job, ImportResult&& result) {
   } else {
     job.source.status = to_string(job.built.status);
     job.source.reason = job.built.reason;
+    for (const ImportedInstance& instance : result.instances) {
+      if (records.empty()) break;
+      job.source.instances.push_back({instance.name, instance.part, instance.X_WI});
+    }
     job.built.elements = catalog_.put(job.source, records);
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
@@ -295,9 +301,33 @@ bool Build::store(Job& job, ImportResult&& result) {
   return true;
 }
 
+/// Of a file that was read now or before. What goes wrong is a warning: the elements are in the
+/// catalogue.
+void Build::make_project(Job& job) {
+  if (!options_.assemblies || job.built.elements.empty()) return;
+  const std::filesystem::path file =
+      *options_.assemblies / (job.input.path.stem().string() + ".dowelproj");
+  try {
+    const SourceRecord source = catalog_.source(job.source.path).value();
+    if (source.instances.size() < 2) return;
+    if (std::filesystem::exists(file)) {
+      const bool is_old = job.built.status == BuildStatus::Ok;
+      if (is_old) job.built.warnings.push_back(file.string() + " exists and is left as it is");
+      return;
+    }
+    std::filesystem::create_directories(*options_.assemblies);
+    write_assembly_project(file, catalog_, source);
+    job.built.project = file.string();
+    job.built.instances = source.instances.size();
+  } catch (const std::exception& error) {
+    job.built.warnings.push_back("no project: " + std::string(error.what()));
+  }
+}
+
 /// Reports the files before `end` that were not reported yet. False: the caller wants no more.
 bool Build::report_until(std::size_t end) {
   while (!stopped_ && report_.size() < end) {
+    make_project(jobs_[report_.size()]);
     report_.push_back(std::move(jobs_[report_.size()].built));
     stopped_ = on_file_ && !on_file_(report_.back(), report_.size(), jobs_.size());
   }

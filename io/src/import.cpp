@@ -121,6 +121,11 @@ ImportResult import_step(const std::filesystem::path& file, const ImportOptions&
     result.parts.back().name = names[i];
     result.parts.back().unit_in_file = content.unit;
   }
+  for (const StepInstance& instance : content.instances) {
+    result.instances.push_back(
+        {is_usable_name(instance.name) ? instance.name : names[instance.part], instance.part,
+         instance.X_WI});
+  }
   result.status = ImportResult::Status::Ok;
   return result;
 }
@@ -136,6 +141,7 @@ ImportResult import_mesh(const std::filesystem::path& file, const StageReport& r
   part.center_of_mass = mass.center_of_mass;
   ImportResult result;
   result.status = ImportResult::Status::Ok;
+  result.instances.push_back({part.name, 0, Pose()});
   result.parts.push_back(std::move(part));
   return result;
 }

@@ -1,5 +1,7 @@
 #include "result_codec.h"
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -8,6 +10,7 @@
 
 #include "dowel/kernel/blob.h"
 #include "dowel/kernel/error.h"
+#include "dowel/kernel/tolerance.h"
 
 namespace dowel {
 namespace {
@@ -102,6 +105,33 @@ ImportedPart decode_part(Reader& in) {
   return part;
 }
 
+void encode_instance(Writer& out, const ImportedInstance& instance) {
+  out.text(instance.name);
+  out.number<std::uint64_t>(instance.part);
+  const Eigen::Quaterniond& q = instance.X_WI.rotation();
+  for (const double value : {q.w(), q.x(), q.y(), q.z()}) out.number(value);
+  for (const double value : instance.X_WI.translation()) out.number(value);
+}
+
+ImportedInstance decode_instance(Reader& in, std::size_t part_count) {
+  ImportedInstance instance;
+  instance.name = in.text();
+  const auto part = in.number<std::uint64_t>();
+  if (part >= part_count) Reader::fail();
+  instance.part = static_cast<std::size_t>(part);
+  std::array<double, 4> q{};
+  Eigen::Vector3d translation;
+  for (double& value : q) value = in.number<double>();
+  for (double& value : translation) value = in.number<double>();
+  const Eigen::Quaterniond rotation(q[0], q[1], q[2], q[3]);
+  // Written so that NaN is refused.
+  if (!(std::abs(rotation.norm() - 1.0) <= kUnitQuaternionSlack) || !translation.allFinite()) {
+    Reader::fail();
+  }
+  instance.X_WI = Pose(rotation, translation);
+  return instance;
+}
+
 }  // namespace
 
 std::vector<std::byte> encode(const ImportResult& result) {
@@ -113,6 +143,8 @@ std::vector<std::byte> encode(const ImportResult& result) {
   for (const std::string& warning : result.warnings) out.text(warning);
   out.number<std::uint64_t>(result.parts.size());
   for (const ImportedPart& part : result.parts) encode_part(out, part);
+  out.number<std::uint64_t>(result.instances.size());
+  for (const ImportedInstance& instance : result.instances) encode_instance(out, instance);
   return out.take();
 }
 
@@ -130,6 +162,9 @@ ImportResult decode_result(std::span<const std::byte> bytes) {
   }
   for (auto count = in.number<std::uint64_t>(); count > 0; --count) {
     result.parts.push_back(decode_part(in));
+  }
+  for (auto count = in.number<std::uint64_t>(); count > 0; --count) {
+    result.instances.push_back(decode_instance(in, result.parts.size()));
   }
   in.expect_end();
   return result;

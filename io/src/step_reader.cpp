@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -23,7 +24,7 @@
 #include <TCollection_AsciiString.hxx>
 #include <TCollection_ExtendedString.hxx>
 #include <TDF_Label.hxx>
-#include <TDF_LabelMap.hxx>
+#include <TDF_LabelIndexedMap.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
@@ -36,8 +37,12 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
+#include <gp_Quaternion.hxx>
+#include <gp_Trsf.hxx>
 
 #include "dowel/io/file.h"
+#include "dowel/io/import.h"
+#include "dowel/kernel/tolerance.h"
 #include "occt.h"
 #include "part_names.h"
 
@@ -178,11 +183,21 @@ class PartCollector {
       : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
         colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())) {}
 
-  std::vector<StepPart> distinct_parts() {
+  /// Each distinct part once, and all its places.
+  void collect(StepContent& content) {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) visit(root);
-    return std::move(parts_);
+    for (const TDF_Label& root : roots) visit(root, gp_Trsf(), "");
+    content.parts = std::move(parts_);
+    content.instances = std::move(instances_);
+    if (visits_ >= kMaxInstances) {
+      content.warnings.push_back("places more than " + std::to_string(kMaxInstances) +
+                                 " parts and assemblies; only the first are kept");
+    }
+    if (distorted_ > 0) {
+      content.warnings.push_back(counted(distorted_, "instance") +
+                                 " mirrored or scaled by the assembly; left out");
+    }
   }
 
   /// All roots placed, as one part with the name of the only root, or none. An assembly has no
@@ -209,18 +224,61 @@ class PartCollector {
   }
 
  private:
-  void visit(const TDF_Label& label) {
+  /// `X_WL`: where the frame of `label` lies. `owner`: name for a part that has none. Assemblies of
+  /// assemblies can place more parts than anybody can count: once there are too many, only what is
+  /// new is looked at.
+  void visit(const TDF_Label& label, const gp_Trsf& X_WL, const std::string& owner) {
     TDF_Label target = label;
     if (shapes_->IsReference(label)) shapes_->GetReferredShape(label, target);
-    if (!visited_.Add(target)) return;
+    const bool is_known = seen_.Contains(target);
+    if (is_known && visits_ >= kMaxInstances) return;
+    ++visits_;
+    const auto index = static_cast<std::size_t>(seen_.Add(target)) - 1;
+    if (!is_known) part_of_.emplace_back();
     if (shapes_->IsAssembly(target)) {
       TDF_LabelSequence components;
       shapes_->GetComponents(target, components);
-      for (const TDF_Label& component : components) visit(component);
+      const std::string name = is_known ? "" : name_for_only_solid(target, components);
+      for (const TDF_Label& component : components) {
+        visit(component, X_WL * XCAFDoc_ShapeTool::GetLocation(component).Transformation(), name);
+      }
       return;
     }
     const TopoDS_Shape shape = shapes_->GetShape(target);
-    if (!shape.IsNull()) parts_.push_back({name_of(target), shape, colour_of(target, shape)});
+    if (shape.IsNull()) return;
+    if (!is_known) {
+      part_of_[index] = parts_.size();
+      std::string name = name_of(target);
+      if (!is_usable_name(name) && !owner.empty()) name = owner;
+      parts_.push_back({std::move(name), shape, colour_of(target, shape)});
+    }
+    add_instance(label, part_of_[index].value(), X_WL);
+  }
+
+  /// The name of an assembly that has one solid and else only surfaces or curves: some systems
+  /// write a part so, and name the assembly alone.
+  std::string name_for_only_solid(const TDF_Label& assembly,
+                                  const TDF_LabelSequence& components) const {
+    int with_solids = 0;
+    for (const TDF_Label& component : components) {
+      if (shapes_->IsAssembly(component)) return "";
+      const TopoDS_Shape shape = shapes_->GetShape(component);
+      if (TopExp_Explorer(shape, TopAbs_SOLID).More()) ++with_solids;
+    }
+    return with_solids == 1 ? name_of(assembly) : "";
+  }
+
+  void add_instance(const TDF_Label& label, std::size_t part, const gp_Trsf& X_WL) {
+    if (instances_.size() >= kMaxInstances) return;
+    if (std::abs(X_WL.ScaleFactor() - 1.0) > kUnitVectorSlack) {  // a mirror's is -1
+      ++distorted_;
+      return;
+    }
+    const gp_Quaternion q = X_WL.GetRotation();
+    const gp_XYZ& t = X_WL.TranslationPart();
+    const Eigen::Quaterniond rotation = Eigen::Quaterniond(q.W(), q.X(), q.Y(), q.Z()).normalized();
+    instances_.push_back(
+        {name_of(label), part, Pose(rotation, Eigen::Vector3d(t.X(), t.Y(), t.Z()))});
   }
 
   static std::string name_of(const TDF_Label& label) {
@@ -254,8 +312,12 @@ class PartCollector {
 
   opencascade::handle<XCAFDoc_ShapeTool> shapes_;
   opencascade::handle<XCAFDoc_ColorTool> colours_;
-  TDF_LabelMap visited_;
+  TDF_LabelIndexedMap seen_;                         ///< parts and assemblies
+  std::vector<std::optional<std::size_t>> part_of_;  ///< of each of them
   std::vector<StepPart> parts_;
+  std::vector<StepInstance> instances_;
+  std::size_t visits_ = 0;
+  std::size_t distorted_ = 0;
 };
 
 std::size_t count_outside(const TopoDS_Shape& shape, TopAbs_ShapeEnum what,
@@ -308,6 +370,25 @@ TopoDS_Shape solids_of(const TopoDS_Shape& shape, Leftovers& leftovers) {
   return any ? TopoDS_Shape(solids) : TopoDS_Shape();
 }
 
+/// Leaves the parts that have solids, and their instances.
+void keep_solids(StepContent& content) {
+  Leftovers leftovers;
+  std::vector<StepPart> parts;
+  std::vector<std::optional<std::size_t>> new_index;
+  for (StepPart& part : content.parts) {
+    part.shape = solids_of(part.shape, leftovers);
+    new_index.emplace_back();
+    if (part.shape.IsNull()) continue;
+    new_index.back() = parts.size();
+    parts.push_back(std::move(part));
+  }
+  content.parts = std::move(parts);
+  std::erase_if(content.instances,
+                [&](const StepInstance& instance) { return !new_index[instance.part]; });
+  for (StepInstance& instance : content.instances) instance.part = *new_index[instance.part];
+  content.leftovers = leftovers.text();
+}
+
 [[noreturn]] void fail_to_read(const std::string& what, const std::vector<std::string>& messages) {
   throw Error(ErrorCode::FileMalformed, what + (messages.empty() ? "" : ": " + messages.front()));
 }
@@ -336,15 +417,12 @@ StepContent read(const std::filesystem::path& file, const std::string& text, boo
   content.warnings = failed_checks(reader);
 
   PartCollector collector(document);
-  std::vector<StepPart> parts;
-  if (transferred && whole_file) parts.push_back(collector.whole());
-  if (transferred && !whole_file) parts = collector.distinct_parts();
-  Leftovers leftovers;
-  for (StepPart& part : parts) {
-    part.shape = solids_of(part.shape, leftovers);
-    if (!part.shape.IsNull()) content.parts.push_back(std::move(part));
+  if (transferred && whole_file) {
+    content.parts.push_back(collector.whole());
+    content.instances.push_back({content.parts.front().name, 0, Pose()});
   }
-  content.leftovers = leftovers.text();
+  if (transferred && !whole_file) collector.collect(content);
+  keep_solids(content);
   if (!content.parts.empty() || !content.leftovers.empty()) return content;
   content.leftovers = untransferred(without_spaces(text));
   if (content.leftovers.empty() && !content.warnings.empty()) {

@@ -9,6 +9,7 @@
 
 #include <TopoDS_Shape.hxx>
 
+#include "dowel/kernel/pose.h"
 #include "worker.h"
 
 namespace dowel {
@@ -20,9 +21,17 @@ struct StepPart {
   std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
 };
 
+/// A part where the file places it.
+struct StepInstance {
+  std::string name;  ///< of the component, cleaned: may be empty or generic
+  std::size_t part = 0;
+  Pose X_WI;
+};
+
 struct StepContent {
   std::vector<StepPart> parts;  ///< in the order of the file
-  std::string unit;             ///< "mm", "inch", ...; several are joined by "+"; empty: not stated
+  std::vector<StepInstance> instances;
+  std::string unit;  ///< "mm", "inch", ...; several are joined by "+"; empty: not stated
   /// What the file has besides or instead of solids: "4 open shells"; empty where nothing.
   std::string leftovers;
   std::vector<std::string> warnings;  ///< load and transfer checks that failed, bounded

@@ -256,6 +256,37 @@ TEST_CASE("A source is remembered with its hash, its settings and what came of i
   CHECK(catalog.source("good.step")->elements == std::vector<std::string>{"z", "a"});
 }
 
+TEST_CASE("Where an assembly has its elements is kept, and checked as it is read") {
+  const TemporaryFolder folder;
+  const auto file = folder / "c.db";
+  dowel::SourceRecord source = block_source();
+  const dowel::Pose X_WI(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {1.0, 2.0, 1.0 / 3.0});
+  source.instances = {{"left", 1, X_WI}, {"left", 0, dowel::Pose()}};
+  {
+    Catalog catalog = writable(file);
+    catalog.put(source, std::vector{block_record("a"), block_record("b")});
+    const auto found = catalog.source(source.path);
+    REQUIRE(found);
+    REQUIRE(found->instances.size() == 2);
+    CHECK(found->instances[0].name == "left");
+    CHECK(found->instances[0].element == 1);
+    CHECK(found->instances[0].X_WI.rotation().coeffs() == X_WI.rotation().coeffs());
+    CHECK(found->instances[0].X_WI.translation() == X_WI.translation());
+    // What the file gives now replaces what it gave.
+    source.instances = {{"one", 0, X_WI}};
+    catalog.put(source, std::vector{block_record("a")});
+    CHECK(catalog.source(source.path)->instances.size() == 1);
+  }
+  const std::string edit = GENERATE(
+      "UPDATE instance SET element_position = 1", "UPDATE instance SET element_position = -1",
+      "UPDATE instance SET qw = 2.0", "UPDATE instance SET x_mm = 9e999");
+  CAPTURE(edit);
+  execute(file, edit);
+  const Error error = error_of([&] { readable(file).source(source.path); });
+  CHECK(error.code() == ErrorCode::FileMalformed);
+  CHECK_THAT(error.what(), Catch::Contains(file.string()) && Catch::Contains(source.path));
+}
+
 TEST_CASE("An element that is not there is nothing, its content an error that names it") {
   const TemporaryFolder folder;
   Catalog catalog = writable(folder / "c.db");
@@ -485,7 +516,7 @@ TEST_CASE("A catalogue of the first version is read, and brought up to this one 
   const auto file = folder / "c.db";
   Catalog(file, Catalog::Access::ReadWrite).put(block_source(), std::vector{block_record("a")});
   execute(file,
-          "DROP TABLE bolt_circle_hole; DROP TABLE bolt_circle;"
+          "DROP TABLE instance; DROP TABLE bolt_circle_hole; DROP TABLE bolt_circle;"
           "DROP TABLE slot; DROP TABLE feature_design; DROP TABLE element_design;"
           "PRAGMA user_version = 1");
   const std::string before = read_text(file);

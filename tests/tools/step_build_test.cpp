@@ -211,6 +211,24 @@ TEST_CASE("real STEP files show the holes that their geometry has") {
   }
 }
 
+TEST_CASE("a real assembly becomes a project that the console opens") {
+  if (!has_real_files()) return;
+  const Bench bench;
+  const std::string file = (fs::path(DOWEL_SHARED_STEP) / "pythonocc_core/as1-oc-214.stp").string();
+  const ProgramResult build =
+      bench.dowel({"catalog", "build", file, "-o", "c.db", "--assemblies", "projects", "--json"});
+  CAPTURE(build.out, build.err);
+  REQUIRE(build.exit_code == 0);
+  const Json line = lines_of(build).at(0);
+  CHECK(line["project"] == "projects/as1-oc-214.dowelproj");
+  CHECK(line["instances"] == 18);
+  const ProgramResult bom = bench.dowel({"bom", "--project", "projects/as1-oc-214.dowelproj"});
+  CAPTURE(bom.out, bom.err);
+  CHECK(bom.exit_code == 0);
+  // Eight nuts.
+  CHECK_THAT(bom.out, Catch::Contains("nut") && Catch::Contains("8"));
+}
+
 // A minute: run by name or tag.
 TEST_CASE("all real STEP files go through one build, and those that load are whole", "[.slow]") {
   if (!has_real_files()) return;

@@ -11,8 +11,16 @@
 
 #include "dowel/catalog/element.h"
 #include "dowel/kernel/faceted_solid.h"
+#include "dowel/kernel/pose.h"
 
 namespace dowel {
+
+/// An element where an assembly has it.
+struct SourceInstance {
+  std::string name;         ///< of the component; not unique
+  std::size_t element = 0;  ///< index into the source's elements
+  Pose X_WI;                ///< in the frame of the assembly
+};
 
 /// What the catalogue keeps of a file that was imported, so that an unchanged one can be skipped.
 struct SourceRecord {
@@ -22,6 +30,7 @@ struct SourceRecord {
   std::string status;    ///< "ok", "empty" or "failed"
   std::string reason;    ///< for the last two
   std::vector<std::string> elements;
+  std::vector<SourceInstance> instances{};  ///< at least one of each element, where it is known
 };
 
 /// An element with its heavy parts, as an import makes it.

@@ -20,6 +20,9 @@ struct BuildOptions {
   /// Recorded with the elements of all files of this build. Without it, elements keep the licence
   /// that the catalogue has for their file.
   std::optional<std::string> licence;
+  /// Folder, made where it is missing, for a project of each file that places more than one part:
+  /// "as1.stp" becomes "as1.dowelproj". A project that is there already is left as it is.
+  std::optional<std::filesystem::path> assemblies;
 };
 
 enum class BuildStatus {
@@ -42,6 +45,8 @@ struct BuiltFile {
   /// What the reader found wrong and went on past; an Unchanged file is not read and has none.
   std::vector<std::string> warnings;
   std::vector<std::string> elements;  ///< their names in the catalogue
+  std::string project;                ///< that was made of its assembly; may be empty
+  std::size_t instances = 0;          ///< in that project
   double seconds = 0.0;               ///< to read it and to recognise its features
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dowel/kernel/faceted_solid.h"
+#include "dowel/kernel/pose.h"
 
 namespace dowel {
 
@@ -24,6 +25,8 @@ struct ImportOptions {
   std::size_t max_memory_mb = 4096;  ///< address space of the worker
 };
 
+inline constexpr std::size_t kMaxInstances = 100'000;
+
 /// One distinct part of a file, in its own frame.
 struct ImportedPart {
   std::string name;  ///< product name as UTF-8, or the file's stem where it has no usable one
@@ -36,6 +39,13 @@ struct ImportedPart {
   std::vector<std::byte> brep;  ///< OpenCascade's binary format; empty for mesh files
 };
 
+/// A part where the file places it.
+struct ImportedInstance {
+  std::string name;      ///< of the component as UTF-8, or the part's where it has no usable one
+  std::size_t part = 0;  ///< index into the parts
+  Pose X_WI;             ///< in the frame of the file
+};
+
 struct ImportResult {
   enum class Status { Ok, Empty, Failed };
   Status status = Status::Failed;
@@ -43,6 +53,10 @@ struct ImportResult {
   /// What the reader found wrong and went on past: the geometry may differ from what was meant.
   std::vector<std::string> warnings;
   std::vector<ImportedPart> parts;
+  /// In the order of the file, sub-assemblies resolved. A part of a file without an assembly is
+  /// there once. Of more than `kMaxInstances` the first; mirrored and scaled ones are left out; a
+  /// warning tells both.
+  std::vector<ImportedInstance> instances;
   double seconds = 0.0;
 };
 
