@@ -46,6 +46,25 @@ class Shelf : public TemporaryFolder {
 
 }  // namespace
 
+TEST_CASE("one system can be written by itself") {
+  const TemporaryFolder folder;
+  const auto dowel = [&folder](const std::vector<std::string>& arguments) {
+    return dowel::testing::run_dowel(arguments, {.folder = folder.path()});
+  };
+  REQUIRE(dowel({"library", "out", "--system", "T14"}).exit_code == 0);
+  const Json manifest = Json::parse(read_text(folder / "out/library.json"));
+  CHECK(manifest["elements"].size() > 40);
+  for (const Json& element : manifest["elements"]) {
+    const auto family = element["family"].get<std::string>();
+    CHECK((family == "T14" || family == "workpiece"));
+    CHECK(std::filesystem::exists(folder / ("out/" + element["file"].get<std::string>())));
+  }
+  const auto unknown = dowel({"library", "none", "--system", "T15"});
+  CHECK(unknown.exit_code == 2);
+  CHECK_THAT(unknown.err, Catch::Contains("T15"));
+  CHECK_FALSE(std::filesystem::exists(folder / "none"));
+}
+
 TEST_CASE("what a library states about an element is in the catalogue") {
   const Shelf shelf;
   REQUIRE(shelf.build()["status"] == "ok");
