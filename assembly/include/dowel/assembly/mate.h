@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
-#include "dowel/catalog/feature.h"
+#include "dowel/assembly/joint.h"
+#include "dowel/catalog/element.h"
 #include "dowel/kernel/pose.h"
 
 namespace dowel {
@@ -17,12 +19,31 @@ namespace dowel {
 /// | BlindHoleOnHole | opposite sense  | opening on opening                                 |
 /// | HoleOverShaft   | see below       | the hole's end next to the shoulder stands on it   |
 /// | FaceOnFace      | opposite sense  | planes coincide; nothing moves in the plane        |
+/// | Align           | either sense    | free                                               |
+/// | KeyInSlot       | into the slot   | a face: on the floor; a hole or shaft: free         |
+/// | Angle           | at an angle     | free                                               |
+/// | Fix             | all of A is held as it stands to B                                    ||
+///
+/// The first four are what `insert` makes of two features, FaceOnFace is a seat. Align is for the
+/// second hole of a pattern. A key is the part of A between two opposite flat faces, the widest
+/// that go in between the walls of the slot; it stands in its middle, along its run.
 ///
 /// A through hole slides over a shaft in the sense that turns the part least; a blind one with its
 /// opening first.
-enum class MateKind { ShaftInHole, HoleOnHole, BlindHoleOnHole, HoleOverShaft, FaceOnFace };
+enum class MateKind {
+  ShaftInHole,
+  HoleOnHole,
+  BlindHoleOnHole,
+  HoleOverShaft,
+  FaceOnFace,
+  Align,
+  KeyInSlot,
+  Angle,
+  Fix
+};
 
-/// "shaft in hole", "hole on hole", "blind hole on hole", "hole over shaft", "face on face".
+/// "shaft in hole", "hole on hole", "blind hole on hole", "hole over shaft", "face on face",
+/// "align", "key in slot", "angle", "fix".
 std::string_view to_string(MateKind kind);
 
 /// A feature and the pose of the instance that it belongs to.
@@ -79,12 +100,39 @@ Pose upright_pose(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& up_W, 
 /// turned as little as can be against the part it stands on.
 Pose standing_pose(const Feature& bottom, const PlacedFeature& face);
 
+/// A mate with the features that it names, in the frames of the parts A (that moves) and B.
+struct MateFeatures {
+  MateKind kind = MateKind::ShaftInHole;
+  const Element* moving_element = nullptr;  ///< KeyInSlot: has the key
+  const Feature* moving = nullptr;          ///< none: Fix
+  const Feature* fixed = nullptr;
+  const Feature* moving_face = nullptr;  ///< of a seat beside an axis; else none
+  const Feature* fixed_face = nullptr;   ///< of B or of a third part C
+  double offset_mm = 0.0;
+  double angle_rad = 0.0;  ///< Angle: between the directions, 0 to pi
+  /// From its other end; Align, KeyInSlot: axes, or runs, of opposite sense.
+  bool flip = false;
+  Pose X_BA_held;  ///< Fix
+};
+
+/// What the mate asks, as joints of A (body 0) with B (body 1) and, of a seat beside an axis, with
+/// C (body 2). `X_BA`: where A stands now; it settles the sense of a through hole over a shaft.
+/// Throws Error{InvalidInput}: features that the kind does not go with, no key that fits the slot.
+std::vector<Joint> mate_joints(const MateFeatures& mate, const Pose& X_BA);
+
+/// `flip` of an Align or KeyInSlot such that A turns least. Throws as `mate_joints` does.
+bool nearest_flip(MateFeatures mate, const Pose& X_BA);
+
 /// How far two mated features are off each other now.
 struct MateResidual {
   double axis_mm = 0.0;    ///< between the axes, at the moving feature; 0 for faces
-  double angle_rad = 0.0;  ///< between the directions, whatever their sense; faces: off opposite
+  double angle_rad = 0.0;  ///< by which directions are off, sense included
   double along_mm = 0.0;   ///< gap along the axis or normal less the offset that was asked for
 };
+
+/// By the joints of a mate, at the poses of A, B and C (that of B where there is no C).
+MateResidual mate_residual(const std::vector<Joint>& joints, const Pose& X_WA, const Pose& X_WB,
+                           const Pose& X_WC);
 
 /// `offset_mm` and `flip` as the mate was made with.
 MateResidual mate_residual(const PlacedFeature& moving, const PlacedFeature& fixed,
