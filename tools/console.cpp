@@ -23,8 +23,10 @@ constexpr std::array kCommands{
             "Writes a copy of the project; one that has no file yet goes on in FILE.",
             "save variant.dwp", true, run_save},
     Command{"place",
-            "ELEMENT [as NAME] [at X Y Z | at INST.FEATURE | on INST.FACE] [rot DEG [about x|y|z]]",
-            "Places an element: with its origin at a point or feature, or standing on a face.",
+            "ELEMENT [as NAME] [at X Y Z | at INST.FEATURE [pattern N] | on INST.FACE] "
+            "[rot DEG [about x|y|z]]",
+            "Places an element: with its origin at a point, or at a feature and mated with what it "
+            "meets there, or standing on a face.",
             "place H40-12/riser-80x80x40 as R1 on PLATE1.top rot 90", true, run_place},
     Command{
         "insert",
@@ -32,6 +34,24 @@ constexpr std::array kCommands{
         "[flip]",
         "Moves the first instance so that axis goes on axis, or face on face; the second stays.",
         "insert PIN1.pin1 into R1.h1 offset 2", true, run_insert},
+    Command{"mate",
+            "insert INST.FEATURE INST.FEATURE [seat INST.FACE on INST.FACE] [offset MM] [rot DEG] "
+            "[flip] | align INST.FEATURE INST.FEATURE | seat INST.FACE INST.FACE [offset MM] | "
+            "slot INST.FEATURE INST.SLOT [offset MM] | angle INST.FEATURE INST.FEATURE DEG | "
+            "fix INST INST",
+            "Makes a mate beside those that are there and keeps them; the first instance moves.",
+            "mate align R1.h2 PLATE1.C5", true, run_mate},
+    Command{"unmate", "NUMBER | INST INST",
+            "Takes out a mate by its number, or all between two instances; nothing moves.",
+            "unmate R1 PLATE1", true, run_unmate},
+    Command{"freedoms", "INST", "Tells how an instance can still move, and which mates hold it.",
+            "freedoms R1", true, run_freedoms},
+    Command{"pattern", "ELEMENT at INST.HOLE",
+            "Lists the ways of standing an element with all its holes on holes, for `place`.",
+            "pattern H40-12/riser-80x80x40 at PLATE1.C4", true, run_pattern},
+    Command{"fit", "MM HOLE/SHAFT | INST.SHAFT INST.HOLE",
+            "Tells the clearance of an ISO 286 fit, or what a shaft is to a hole.", "fit 12 H7/g6",
+            true, run_fit},
     Command{"move", "NAME by DX DY DZ | to X Y Z | along x|y|z|INST.FEATURE MM",
             "Moves an instance on a straight line and checks the way.", "move R1 along x -40", true,
             run_move},

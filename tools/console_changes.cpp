@@ -1,51 +1,17 @@
 // The words that change a project.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "console_commands.h"
+#include "console_read.h"
 #include "console_text.h"
 #include "dowel/assembly/suggest.h"
 #include "table.h"
 
 namespace dowel::tools {
 namespace {
-
-constexpr double kRad_per_degree = std::numbers::pi / 180.0;
-constexpr double kFullTurn_deg = 360.0;
-
-/// An angle in degrees, as radians.
-double read_angle(Arguments& arguments) {
-  const double degrees = arguments.number("an angle in degrees");
-  if (std::abs(degrees) > kFullTurn_deg) {
-    arguments.fail_at_last("an angle is at most 360 degrees either way");
-  }
-  return degrees * kRad_per_degree;
-}
-
-std::string read_instance(Console& console, Arguments& arguments) {
-  const std::string name = arguments.word("an instance");
-  return arguments.located([&] { return console.session().instance(name).name; });
-}
-
-FeatureName read_feature(Console& console, Arguments& arguments, std::string_view what) {
-  FeatureName name = arguments.feature(what);
-  arguments.located([&] { console.session().feature(name); });
-  return name;
-}
-
-std::optional<Eigen::Vector3d> take_coordinate_axis(Arguments& arguments) {
-  constexpr std::array<const char*, 3> kNames{"x", "y", "z"};
-  for (int i = 0; i < 3; ++i) {
-    if (arguments.take(kNames[static_cast<std::size_t>(i)])) {
-      return Eigen::Vector3d(Eigen::Vector3d::Unit(i));
-    }
-  }
-  return std::nullopt;
-}
 
 /// A line in the world; without a point where the words name a direction alone.
 struct Axis {
@@ -64,27 +30,48 @@ Axis read_axis(Console& console, Arguments& arguments) {
 struct Placing {
   std::string name;
   std::optional<Pose> X_WI;
+  std::optional<FeatureName> at;  ///< with which it is mated
   double turn_rad = 0.0;
   std::optional<Eigen::Vector3d> turn_axis_W;
 };
 
-Pose read_place_at(Console& console, Arguments& arguments) {
+void read_place_at(Console& console, Arguments& arguments, Placing& placing) {
   if (arguments.is_number()) {
-    return Pose::from_translation(arguments.point("three coordinates in mm"));
+    placing.X_WI = Pose::from_translation(arguments.point("three coordinates in mm"));
+    return;
   }
-  const FeatureName name = read_feature(console, arguments, "three coordinates or a feature");
-  return console.session().pose_at(name);
+  placing.at = read_feature(console, arguments, "three coordinates or a feature");
+  placing.X_WI = console.session().pose_at(*placing.at);
+}
+
+/// The way that `pattern N` names.
+void read_pattern(Console& console, Arguments& arguments, const std::string& element,
+                  Placing& placing) {
+  if (!placing.at) arguments.fail_at_last("`pattern` goes behind `at INSTANCE.FEATURE`");
+  const std::size_t number = arguments.count("the number of a way");
+  const std::vector<PatternWay> ways =
+      arguments.located([&] { return console.session().pattern(element, *placing.at); });
+  if (number > ways.size()) {
+    arguments.fail_at_last("there are " + counted(ways.size(), "way") + " of standing " + element +
+                           " on " + placing.at->text() + "; `pattern " + element + " at " +
+                           placing.at->text() + "` lists them");
+  }
+  placing.X_WI = console.session().instance(placing.at->instance).X_WI * ways[number - 1].X_BE;
 }
 
 Placing read_placing(Console& console, Arguments& arguments, const std::string& element) {
   Placing placing;
   bool is_turned = false;
+  bool has_pattern = false;
   while (!arguments.at_end()) {
     if (placing.name.empty() && arguments.take("as")) {
       placing.name = arguments.word("a name for the instance");
       if (placing.name.empty()) arguments.fail_at_last("a name is not empty");
     } else if (!placing.X_WI && arguments.take("at")) {
-      placing.X_WI = read_place_at(console, arguments);
+      read_place_at(console, arguments, placing);
+    } else if (!has_pattern && arguments.take("pattern")) {
+      has_pattern = true;
+      read_pattern(console, arguments, element, placing);
     } else if (!placing.X_WI && arguments.take("on")) {
       const FeatureName face = arguments.feature("a face");
       placing.X_WI = arguments.located([&] { return console.session().pose_on(element, face); });
@@ -96,7 +83,7 @@ Placing read_placing(Console& console, Arguments& arguments, const std::string& 
         if (!placing.turn_axis_W) arguments.fail("expected x, y or z");
       }
     } else {
-      arguments.fail("expected `as`, `at`, `on` or `rot`, each once");
+      arguments.fail("expected `as`, `at`, `on`, `pattern` or `rot`, each once");
     }
   }
   return placing;
@@ -165,7 +152,10 @@ Reply run_place(Console& console, Arguments& arguments) {
         placing.turn_axis_W.value_or(X_WI.rotation() * Eigen::Vector3d::UnitZ());
     X_WI = Pose::about_axis(X_WI.translation(), axis_W.normalized(), placing.turn_rad) * X_WI;
   }
-  const MoveReport report = console.session().place(element, placing.name, X_WI, arguments.line());
+  const MoveReport report =
+      placing.at
+          ? console.session().place_at(element, placing.name, X_WI, *placing.at, arguments.line())
+          : console.session().place(element, placing.name, X_WI, arguments.line());
   Reply reply = to_reply(report, "placed at");
   reply.json["element"] = element;
   return reply;
@@ -176,26 +166,9 @@ Reply run_insert(Console& console, Arguments& arguments) {
   request.moving = read_feature(console, arguments, "a feature of the instance that moves");
   arguments.expect("into");
   request.fixed = read_feature(console, arguments, "a feature of the instance that stays");
-  bool has_offset = false;
-  bool is_turned = false;
-  while (!arguments.at_end()) {
-    if (!request.seat && arguments.take("seat")) {
-      FeatureName moving_face = read_feature(console, arguments, "a face");
-      arguments.expect("on");
-      FeatureName fixed_face = read_feature(console, arguments, "a face");
-      request.seat = {std::move(moving_face), std::move(fixed_face)};
-    } else if (!has_offset && arguments.take("offset")) {
-      has_offset = true;
-      request.options.offset_mm = arguments.number("an offset in mm");
-    } else if (!is_turned && arguments.take("rot")) {
-      is_turned = true;
-      request.options.rotation_rad = read_angle(arguments);
-    } else if (!request.options.flip && arguments.take("flip")) {
-      request.options.flip = true;
-    } else {
-      arguments.fail("expected `seat`, `offset`, `rot` or `flip`, each once");
-    }
-  }
+  const InsertWords words = read_insert_words(console, arguments);
+  request.seat = words.seat;
+  request.options = words.options;
   const MoveReport report = console.session().insert(request, arguments.line());
   Reply reply = to_reply(report, "inserted at");
   if (report.made && report.made->thread) reply.text += ", threaded";

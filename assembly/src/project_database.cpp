@@ -10,6 +10,7 @@
 
 #include "dowel/kernel/blob.h"
 #include "dowel/kernel/error.h"
+#include "mate_target_table.h"
 
 namespace dowel {
 namespace {
@@ -23,7 +24,7 @@ struct SchemaTable {
 };
 
 /// Instances and mates are columns rather than documents so that rules can be written over them.
-constexpr std::array<SchemaTable, 5> kTables{{
+const std::array<SchemaTable, 6> kTables{{
     {"setting", R"(CREATE TABLE setting (
   name TEXT PRIMARY KEY,
   value TEXT NOT NULL
@@ -68,6 +69,7 @@ constexpr std::array<SchemaTable, 5> kTables{{
   after TEXT NOT NULL,
   undone INTEGER NOT NULL CHECK (undone IN (0, 1))
 ) STRICT)"},
+    {kMateTargetTable, kMateTargetSql},
 }};
 
 /// Says in our words what SQLite ran into.
@@ -130,7 +132,7 @@ void expect_project(SQLite::Database& database, const std::string& title) {
     throw Error(ErrorCode::SchemaMismatch, title + ": is not a dowel project");
   }
   const std::int64_t version = number_of(database, "PRAGMA user_version");
-  if (version != kProjectVersion) {
+  if (version != kProjectVersion && version != kProjectVersionWithoutTargets) {
     throw Error(ErrorCode::SchemaMismatch,
                 title + ": is a project of version " + std::to_string(version) +
                     ", this program reads version " + std::to_string(kProjectVersion));
@@ -142,6 +144,7 @@ void expect_project(SQLite::Database& database, const std::string& title) {
     throw Error(ErrorCode::SchemaMismatch, title + ": has triggers or views, which no project has");
   }
   for (const SchemaTable& table : kTables) {
+    if (version == kProjectVersionWithoutTargets && table.name == kMateTargetTable) continue;
     SQLite::Statement sql(database,
                           "SELECT sql FROM sqlite_schema WHERE type = 'table' AND name = ?");
     sql.bind(1, table.name);
@@ -150,6 +153,16 @@ void expect_project(SQLite::Database& database, const std::string& title) {
                   title + ": its table \"" + table.name + "\" is not the one of a project");
     }
   }
+}
+
+/// Makes a project of an older version one of this, but for one that is write-protected.
+void upgrade(SQLite::Database& database) {
+  if (number_of(database, "PRAGMA user_version") == kProjectVersion) return;
+  if (sqlite3_db_readonly(database.getHandle(), "main") == 1) return;
+  SQLite::Transaction transaction(database);
+  database.exec(kMateTargetSql);
+  database.exec("PRAGMA user_version = " + std::to_string(kProjectVersion));
+  transaction.commit();
 }
 
 void create_tables(SQLite::Database& database) {
@@ -274,6 +287,7 @@ ProjectDatabase::ProjectDatabase(const std::filesystem::path& file)
     harden(database_);
     lock(database_);
     expect_project(database_, title_);
+    upgrade(database_);
   });
 }
 
@@ -304,6 +318,7 @@ ProjectState ProjectDatabase::read_state() const {
       Mate mate = read_mate(mates, title_);
       state.mates.emplace(mate.number, mate);
     }
+    read_mate_targets(database_, state, title_);
     if (const auto defect = find_defect(state, element_names())) {
       throw Error(ErrorCode::FileMalformed, title_ + ": is damaged: " + *defect);
     }
@@ -462,6 +477,7 @@ void ProjectDatabase::write_rows(const ProjectRows& before, const ProjectRows& a
     insert.bind(11, mate.flip ? 1 : 0);
     insert.bind(12, mate.thread ? 1 : 0);
     insert.exec();
+    write_mate_target(database_, mate);
   }
 }
 

@@ -17,8 +17,9 @@ namespace dowel {
 /// "DWLP" in the database header: tells a project from any other SQLite file.
 inline constexpr std::int32_t kProjectApplicationId = 0x44574C50;
 
-/// Grows with every change of the tables.
-inline constexpr std::int32_t kProjectVersion = 1;
+/// Grows with every change of the tables. Version 1 had no table "mate_target".
+inline constexpr std::int32_t kProjectVersion = 2;
+inline constexpr std::int32_t kProjectVersionWithoutTargets = 1;
 
 /// Which journal entry to take.
 enum class JournalEnd { LastDone, FirstUndone };

@@ -66,29 +66,37 @@ FeatureName feature_name_from(const Json& json) {
 }
 
 Json to_json(const Mate& mate) {
-  return {{"number", mate.number},
-          {"kind", to_string(mate.kind)},
-          {"moving", to_json(mate.moving)},
-          {"fixed", to_json(mate.fixed)},
-          {"moving_face", to_json(mate.moving_face)},
-          {"fixed_face", to_json(mate.fixed_face)},
-          {"offset_mm", mate.offset_mm},
-          {"flip", mate.flip},
-          {"thread", mate.thread}};
+  Json json{{"number", mate.number},
+            {"kind", to_string(mate.kind)},
+            {"moving", to_json(mate.moving)},
+            {"fixed", to_json(mate.fixed)},
+            {"moving_face", to_json(mate.moving_face)},
+            {"fixed_face", to_json(mate.fixed_face)},
+            {"offset_mm", mate.offset_mm},
+            {"flip", mate.flip},
+            {"thread", mate.thread}};
+  // Kinds of version 1 have neither, and are written as they were.
+  if (mate.kind == MateKind::Angle) json["angle_rad"] = mate.angle_rad;
+  if (mate.X_FM) json["held"] = to_json(*mate.X_FM);
+  return json;
 }
 
 Mate mate_from(const Json& json) {
   const auto kind = mate_kind_from(json.at("kind").get<std::string>());
   if (!kind) throw Error(ErrorCode::FileMalformed, "a mate is of an unknown kind");
-  return {.number = json.at("number").get<std::uint32_t>(),
-          .kind = *kind,
-          .moving = feature_name_from(json.at("moving")),
-          .fixed = feature_name_from(json.at("fixed")),
-          .moving_face = feature_name_from(json.at("moving_face")),
-          .fixed_face = feature_name_from(json.at("fixed_face")),
-          .offset_mm = json.at("offset_mm").get<double>(),
-          .flip = json.at("flip").get<bool>(),
-          .thread = json.at("thread").get<bool>()};
+  Mate mate{.number = json.at("number").get<std::uint32_t>(),
+            .kind = *kind,
+            .moving = feature_name_from(json.at("moving")),
+            .fixed = feature_name_from(json.at("fixed")),
+            .moving_face = feature_name_from(json.at("moving_face")),
+            .fixed_face = feature_name_from(json.at("fixed_face")),
+            .offset_mm = json.at("offset_mm").get<double>(),
+            .flip = json.at("flip").get<bool>(),
+            .thread = json.at("thread").get<bool>(),
+            .angle_rad = json.value("angle_rad", 0.0),
+            .X_FM = std::nullopt};
+  if (json.contains("held")) mate.X_FM = pose_from(json.at("held"));
+  return mate;
 }
 
 Json to_json(const HoleSegment& segment) {

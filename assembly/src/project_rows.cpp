@@ -140,7 +140,10 @@ std::optional<std::string> find_defect(const ProjectState& state,
     const bool sound = is_known(state, mate.moving) && is_known(state, mate.fixed) &&
                        (!mate.has_seat() ||
                         (is_known(state, mate.moving_face) && is_known(state, mate.fixed_face))) &&
-                       std::isfinite(mate.offset_mm);
+                       std::isfinite(mate.offset_mm) && std::isfinite(mate.angle_rad);
+    if ((mate.kind == MateKind::Fix) != mate.X_FM.has_value()) {
+      return "mate " + std::to_string(number) + " has a held pose, or none, against its kind";
+    }
     if (!sound) return "mate " + std::to_string(number) + " is between unknown instances";
   }
   return std::nullopt;
@@ -148,8 +151,8 @@ std::optional<std::string> find_defect(const ProjectState& state,
 
 std::optional<MateKind> mate_kind_from(std::string_view text) {
   using enum MateKind;
-  for (const MateKind kind :
-       {ShaftInHole, HoleOnHole, BlindHoleOnHole, HoleOverShaft, FaceOnFace}) {
+  for (const MateKind kind : {ShaftInHole, HoleOnHole, BlindHoleOnHole, HoleOverShaft, FaceOnFace,
+                              Align, KeyInSlot, Angle, Fix}) {
     if (to_string(kind) == text) return kind;
   }
   return std::nullopt;

@@ -10,20 +10,14 @@ namespace dowel {
 namespace {
 
 /// True where `segment` is a core hole for a thread of the shaft's diameter.
-bool is_core_hole(const Feature& shaft, const HoleSegment& segment) {
+bool is_core_hole(double shaft_diameter_mm, const HoleSegment& segment) {
   return segment.type == HoleSegment::Type::Cylinder &&
-         forms_thread(shaft.diameter_mm, segment.diameter_mm);
+         forms_thread(shaft_diameter_mm, segment.diameter_mm);
 }
 
-/// A stretch of depth along a hole.
-struct Stretch {
-  double from_mm = 0.0;
-  double to_mm = 0.0;
-};
-
 /// The core hole `segments[i]` with the chamfers beside it that narrow towards it.
-Stretch with_chamfers(const std::vector<HoleSegment>& segments, std::size_t i) {
-  Stretch stretch{segments[i].from_mm, segments[i].to_mm};
+DepthRange with_chamfers(const std::vector<HoleSegment>& segments, std::size_t i) {
+  DepthRange stretch{segments[i].from_mm, segments[i].to_mm};
   if (i > 0 && segments[i - 1].type == HoleSegment::Type::Cone &&
       segments[i - 1].diameter_mm > segments[i - 1].diameter_end_mm) {
     stretch.from_mm = segments[i - 1].from_mm;
@@ -79,21 +73,40 @@ AxisFit fit_on_axis(const Feature& shaft, const Pose& X_WS, const Feature& hole,
   return fit;
 }
 
+std::optional<DepthRange> core_hole(const Feature& hole, double nominal_mm) {
+  for (const HoleSegment& segment : hole.segments) {
+    if (is_core_hole(nominal_mm, segment)) return DepthRange{segment.from_mm, segment.to_mm};
+  }
+  return std::nullopt;
+}
+
+double engagement_mm(const Feature& shaft, const Pose& X_WS, const Feature& hole,
+                     const Pose& X_WH) {
+  DOWEL_EXPECTS(shaft.kind == FeatureKind::Shaft && hole.kind == FeatureKind::Hole);
+  const auto core = core_hole(hole, shaft.diameter_mm);
+  if (!core) return 0.0;
+  const Pose X_HS = X_WH.inverse() * X_WS;
+  const auto depth_of = [&](double along_shaft_mm) {
+    const Eigen::Vector3d point = X_HS * (shaft.origin + along_shaft_mm * shaft.direction);
+    return hole.direction.dot(point - hole.origin);
+  };
+  const auto [low_mm, high_mm] = std::minmax({depth_of(0.0), depth_of(shaft.depth_mm)});
+  return DepthRange{std::max(low_mm, core->from_mm), std::min(high_mm, core->to_mm)}.length_mm();
+}
+
 std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT,
                                          const Element& screw, const Pose& X_WS) {
   std::vector<ThreadRelief> reliefs;
   const Pose X_TS = X_WT.inverse() * X_WS;
   for (const Feature& shaft : screw.features) {
     if (shaft.kind != FeatureKind::Shaft) continue;
-    const MetricThread* thread = thread_of_shaft(shaft.diameter_mm);
-    if (thread == nullptr) continue;
     for (const Feature& hole : tapped.features) {
       if (hole.kind != FeatureKind::Hole) continue;
       for (std::size_t i = 0; i < hole.segments.size(); ++i) {
         const HoleSegment& segment = hole.segments[i];
-        if (!is_core_hole(shaft, segment)) continue;
+        if (!is_core_hole(shaft.diameter_mm, segment)) continue;
         if (!is_coaxial(shaft, X_TS, hole, 0.5 * (segment.from_mm + segment.to_mm))) continue;
-        const Stretch stretch = with_chamfers(hole.segments, i);
+        const DepthRange stretch = with_chamfers(hole.segments, i);
         reliefs.push_back({.start = hole.origin + stretch.from_mm * hole.direction,
                            .direction = hole.direction,
                            .length_mm = stretch.to_mm - stretch.from_mm,

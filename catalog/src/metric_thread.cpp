@@ -54,6 +54,11 @@ const MetricThread* thread_of_shaft(double shaft_diameter_mm) {
       [=](const MetricThread& thread) { return has_nominal(thread, shaft_diameter_mm); });
 }
 
+const MetricThread* thread_of_core_hole(double hole_diameter_mm) {
+  return first_where(
+      [=](const MetricThread& thread) { return is_core_hole(thread, hole_diameter_mm); });
+}
+
 const MetricThread* likely_thread_of_hole(double hole_diameter_mm) {
   const auto is = [=](double diameter_mm) {
     return std::abs(hole_diameter_mm - diameter_mm) <= kCoaxial_mm;

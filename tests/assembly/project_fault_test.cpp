@@ -152,6 +152,7 @@ TEST_CASE("a damaged project file gives an error or a project, never a crash", "
     for (std::uint32_t i = 2; i < 12; ++i) project.commit("p", with_block(project.state(), i));
   }
   const std::string sound = testing::read_text(file);
+  const dowel::ProjectState sound_state = Project::open(file).state();
   const auto try_all = [&] {
     try {
       Project project = Project::open(file);
@@ -174,9 +175,14 @@ TEST_CASE("a damaged project file gives an error or a project, never a crash", "
     CAPTURE(length);
     testing::write_text(file, sound.substr(0, length));
     std::filesystem::remove(folder / "a.dwp-journal");
-    try_all() ? ++opened : ++refused;
+    // The last page ends in zeros, which SQLite reads where there is nothing: then nothing is lost.
+    const bool is_whole = sound.find_first_not_of('\0', length) == std::string::npos;
+    if (is_whole) CHECK(Project::open(file).state() == sound_state);
+    const bool is_opened = try_all();
+    CHECK(is_opened == is_whole);
+    is_opened ? ++opened : ++refused;
   }
-  CHECK(refused == 40);
+  CHECK(refused >= 30);
   testing::RandomGeometry random(3);
   opened = 0;
   refused = 0;

@@ -233,7 +233,7 @@ TEST_CASE("what is no project is refused with the name of the file and what it i
   testing::write_fixture_catalog(folder / "catalog.db");
   CHECK(code_of_opening(folder / "catalog.db") == ErrorCode::SchemaMismatch);
   Project::create(folder / "newer.dwp");
-  set_pragma(folder / "newer.dwp", "user_version = 2");
+  set_pragma(folder / "newer.dwp", "user_version = 3");
   CHECK(code_of_opening(folder / "newer.dwp") == ErrorCode::SchemaMismatch);
   Project::create(folder / "trigger.dwp");
   {

@@ -303,7 +303,7 @@ TEST_CASE("every example of the help is a line that the console understands") {
     CHECK((run.exit_code == 0 || run.exit_code == 3));
     ++examples;
   }
-  CHECK(examples == 23);
+  CHECK(examples == 28);
 }
 
 TEST_CASE("exports appear whole, and a disk without room damages nothing", "[fault]") {

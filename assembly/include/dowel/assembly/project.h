@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -55,7 +56,9 @@ struct Mate {
   FeatureName fixed_face;
   double offset_mm = 0.0;
   bool flip = false;
-  bool thread = false;  ///< shaft and hole form a thread
+  bool thread = false;       ///< shaft and hole form a thread
+  double angle_rad = 0.0;    ///< Angle
+  std::optional<Pose> X_FM;  ///< Fix, and only then: moving in fixed part, whose features are none
 
   bool has_seat() const { return !fixed_face.instance.empty(); }
   bool operator==(const Mate&) const = default;

@@ -9,7 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "dowel/assembly/freedom.h"
 #include "dowel/assembly/mate.h"
+#include "dowel/assembly/mate_solver.h"
+#include "dowel/assembly/pattern.h"
 #include "dowel/assembly/project.h"
 #include "dowel/catalog/catalog.h"
 #include "dowel/collision/scene.h"
@@ -21,6 +24,17 @@ struct Touch {
   std::string instance;  ///< the one that moved; of a check of all: the one placed first
   std::string with;
   PairVerdict pair;
+};
+
+/// A mate that cannot hold beside others.
+struct MateConflict {
+  Mate mate;
+  double off_mm = 0.0;  ///< by how much it is missed where the others hold
+  double off_rad = 0.0;
+  /// It could hold, but would place the part by next to nothing: two holes that are almost one.
+  bool is_nearly_redundant = false;
+  /// Those that it contradicts together: without any one of them it could hold beside the rest.
+  std::vector<Mate> against;
 };
 
 /// What became of one placement or move. An interference is an answer, not an error.
@@ -35,8 +49,36 @@ struct MoveReport {
   /// Moves: how much of the way is free of interference, in [0, 1], and the last free pose.
   double free_share = 1.0;
   Pose X_WI_free;
-  std::optional<Mate> made;   ///< insert
+  std::optional<Mate> made;   ///< insert, mate
+  std::vector<Mate> held_by;  ///< place_at: mates that were made with it
   std::vector<Mate> dropped;  ///< mates that no longer hold
+  // Of `mate`:
+  std::vector<std::string> moved_along;  ///< other instances that had to move; by order of placing
+  bool is_redundant = false;             ///< the mate takes no freedom
+  std::optional<MateConflict> conflict;  ///< why it cannot be made; then it is refused
+};
+
+/// A mate to make beside those that are there. All but insert keep the present place in what they
+/// leave free.
+struct MateRequest {
+  std::optional<MateKind> kind;  ///< none: insert, by what the features are
+  FeatureName moving;            ///< Fix: no feature
+  FeatureName fixed;
+  std::optional<std::pair<FeatureName, FeatureName>> seat;  ///< insert
+  MateOptions options;     ///< insert; of a seat and a slot the offset alone
+  double angle_rad = 0.0;  ///< Angle
+};
+
+/// What can still move.
+struct FreedomReport {
+  std::vector<Freedom> freedoms;
+  /// The part that the freedoms are told against where no grounded one is in reach; else empty.
+  std::string relative_to;
+  struct MateShare {
+    Mate mate;
+    MateVerdict verdict;
+  };
+  std::vector<MateShare> mates;  ///< of the instance, in the order of making
 };
 
 struct InsertRequest {
@@ -91,12 +133,24 @@ class Session {
   /// Standing with its bottom on a face. Throws Error{InvalidInput} where it has no planar face
   /// that looks down.
   Pose pose_on(std::string_view element_name, const FeatureName& face);
+  /// All ways of standing it with its holes on holes, one on `hole`; `X_BE` against its instance.
+  std::vector<PatternWay> pattern(std::string_view element_name, const FeatureName& hole);
 
   // What changes the project. Grounded instances do not move: Error{InvalidInput}.
   MoveReport place(std::string_view element_name, std::string_view name, const Pose& X_WI,
                    std::string_view command);
+  /// The same, and mates it with the part of hole or face `at`: what of it goes there as `insert`
+  /// would place it (see `matching_pairs`), by `insert` at `at` and `align` farthest from it.
+  MoveReport place_at(std::string_view element_name, std::string_view name, const Pose& X_WI,
+                      const FeatureName& at, std::string_view command);
   /// Checked where it ends. A shaft thicker than the bore is Error{InvalidInput} with the numbers.
   MoveReport insert(const InsertRequest& request, std::string_view command);
+  /// Makes a mate beside those that the instance has, and keeps them. The instance moves alone
+  /// where that will do; else all that hang together with it, but for grounded ones. A mate that
+  /// cannot hold is refused with the reason in `conflict`; one that would interfere, as `insert`.
+  MoveReport mate(const MateRequest& request, std::string_view command);
+  /// Takes mates out; nothing moves. Expects: their numbers.
+  void unmate(std::span<const std::uint32_t> numbers, std::string_view command);
   /// Its origin goes to `to_W` on a straight line, without turning. Checked on the way and at the
   /// end; a move out of an interference, at the end alone.
   MoveReport move(std::string_view name, const Eigen::Vector3d& to_W, std::string_view command);
@@ -121,6 +175,8 @@ class Session {
   /// By element name.
   std::vector<BomRow> bill_of_materials();
   MateResidual residual(const Mate& mate);
+  /// By the mates of all that hang together with it.
+  FreedomReport freedoms(std::string_view name);
 
  private:
   struct Impl;

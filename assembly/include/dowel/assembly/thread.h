@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "dowel/catalog/element.h"
@@ -22,6 +23,22 @@ struct AxisFit {
 /// a matter of collision. `obstacle` points into `hole`.
 /// Expects: a shaft and a hole, coaxial.
 AxisFit fit_on_axis(const Feature& shaft, const Pose& X_WS, const Feature& hole, const Pose& X_WH);
+
+/// A stretch of depth along a hole.
+struct DepthRange {
+  double from_mm = 0.0;
+  double to_mm = 0.0;
+
+  double length_mm() const { return to_mm > from_mm ? to_mm - from_mm : 0.0; }
+};
+
+/// Where in the hole, by depth, its first core hole for a thread of `nominal_mm` is; nothing where
+/// there is none.
+std::optional<DepthRange> core_hole(const Feature& hole, double nominal_mm);
+
+/// Length over which shaft and hole are in thread with each other; 0 where they form none.
+/// Expects: a shaft and a hole, coaxial.
+double engagement_mm(const Feature& shaft, const Pose& X_WS, const Feature& hole, const Pose& X_WH);
 
 /// Threads that the shafts of one element form with the holes of another where they are coaxial
 /// (within kCoaxial_mm and kCoaxial_rad), as cylinders in the frame of `tapped`. A relief spans its

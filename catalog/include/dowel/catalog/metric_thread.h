@@ -30,6 +30,10 @@ const MetricThread* find_metric_thread(std::string_view name);
 /// no nominal diameter.
 const MetricThread* thread_of_shaft(double shaft_diameter_mm);
 
+/// The first thread that a bore of `hole_diameter_mm` can be the core hole of, plain as it may be;
+/// nothing where it is none.
+const MetricThread* thread_of_core_hole(double hole_diameter_mm);
+
 /// The thread that a bore of `hole_diameter_mm` likely is for: it has the minor diameter (within
 /// 0.02 mm), or that of a tap drill that tells. Nothing where it may as well be a plain bore.
 const MetricThread* likely_thread_of_hole(double hole_diameter_mm);

@@ -1,0 +1,92 @@
+#include "console_fit.h"
+
+#include <utility>
+
+#include "console_text.h"
+#include "dowel/assembly/thread.h"
+#include "table.h"
+
+namespace dowel::tools {
+namespace {
+
+/// Widest cylinder of the bore that the shaft does not fill, or the narrowest that it has.
+double bore_of(const Feature& shaft, const Feature& hole) {
+  double bore_mm = hole.diameter_mm;
+  for (const HoleSegment& segment : hole.segments) {
+    if (segment.type != HoleSegment::Type::Cylinder) continue;
+    const bool is_nearer = fit_as_drawn(segment.diameter_mm, shaft.diameter_mm).has_value();
+    if (is_nearer) bore_mm = segment.diameter_mm;
+  }
+  return bore_mm;
+}
+
+std::string thread_text(double nominal_mm) {
+  return "M" + short_number(nominal_mm);
+}
+
+}  // namespace
+
+std::string fit_text(const Fit& fit) {
+  return fit.text() + ": " + std::string(fit.kind()) + " fit, clearance " +
+         short_number(fit.least_clearance_um()) + " to " + short_number(fit.most_clearance_um()) +
+         " um";
+}
+
+Json to_json(const Fit& fit) {
+  return {{"fit", fit.text()},
+          {"kind", fit.kind()},
+          {"least_clearance_um", fit.least_clearance_um()},
+          {"most_clearance_um", fit.most_clearance_um()}};
+}
+
+std::string drawn_fit_text(const Feature& shaft, const Feature& hole) {
+  if (core_hole(hole, shaft.diameter_mm)) {
+    return "thread " + thread_text(shaft.diameter_mm) + " in thread " +
+           thread_text(shaft.diameter_mm);
+  }
+  const double bore_mm = bore_of(shaft, hole);
+  if (const auto fit = fit_as_drawn(bore_mm, shaft.diameter_mm)) {
+    return fit_text(*fit) + " (as drawn)";
+  }
+  std::string text =
+      "shaft " + length_text(shaft.diameter_mm) + " mm in hole " + length_text(bore_mm) + " mm: ";
+  const double play_mm = bore_mm - shaft.diameter_mm;
+  text += play_mm < 0.0 ? "too thick by " + length_text(-play_mm) + " mm"
+                        : "play " + length_text(play_mm) + " mm as drawn";
+  const MetricThread* core = thread_of_core_hole(bore_mm);
+  if (core != nullptr && play_mm >= 0.0) {
+    text += "; the hole is the core of a thread " + thread_text(core->nominal_mm);
+  }
+  return text;
+}
+
+Json drawn_fit_json(const Feature& shaft, const Feature& hole) {
+  const double bore_mm = bore_of(shaft, hole);
+  Json json{{"shaft_mm", shaft.diameter_mm}, {"hole_mm", bore_mm}};
+  if (core_hole(hole, shaft.diameter_mm)) {
+    json["thread_mm"] = shaft.diameter_mm;
+  } else if (const auto fit = fit_as_drawn(bore_mm, shaft.diameter_mm)) {
+    json.update(to_json(*fit));
+  }
+  return json;
+}
+
+std::string mate_fit_text(Session& session, const Mate& mate) {
+  if (mate.kind == MateKind::Fix) return {};
+  PlacedFeature shaft = session.feature(mate.moving);
+  PlacedFeature hole = session.feature(mate.fixed);
+  if (shaft.feature->kind == FeatureKind::Hole) std::swap(shaft, hole);
+  if (shaft.feature->kind != FeatureKind::Shaft || hole.feature->kind != FeatureKind::Hole ||
+      mate.kind == MateKind::Angle) {
+    return {};
+  }
+  std::string text = drawn_fit_text(*shaft.feature, *hole.feature);
+  if (mate.thread) {
+    text += ", engaged over " +
+            length_text(engagement_mm(*shaft.feature, shaft.X_WI, *hole.feature, hole.X_WI)) +
+            " mm";
+  }
+  return text;
+}
+
+}  // namespace dowel::tools
