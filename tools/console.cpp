@@ -52,6 +52,13 @@ constexpr std::array kCommands{
     Command{"fit", "MM HOLE/SHAFT | INST.SHAFT INST.HOLE",
             "Tells the clearance of an ISO 286 fit, or what a shaft is to a hole.", "fit 12 H7/g6",
             true, run_fit},
+    Command{"stack", "MM at INST.HOLE [way N] [dry-run]",
+            "Reaches a height from the spacers of the catalogue, with the fewest pieces.",
+            "stack 85 at PLATE1.E5", true, run_stack},
+    Command{"fasten", "INST.HOLE [way N] [dry-run]",
+            "Chooses a screw, with washer and nut where need be, that holds and does not bottom, "
+            "and places them.",
+            "fasten R1.cb1", true, run_fasten},
     Command{"move", "NAME by DX DY DZ | to X Y Z | along x|y|z|INST.FEATURE MM",
             "Moves an instance on a straight line and checks the way.", "move R1 along x -40", true,
             run_move},

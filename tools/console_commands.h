@@ -16,6 +16,8 @@ Reply run_mate(Console& console, Arguments& arguments);
 Reply run_unmate(Console& console, Arguments& arguments);
 Reply run_pattern(Console& console, Arguments& arguments);
 Reply run_fit(Console& console, Arguments& arguments);
+Reply run_stack(Console& console, Arguments& arguments);
+Reply run_fasten(Console& console, Arguments& arguments);
 Reply run_freedoms(Console& console, Arguments& arguments);
 Reply run_move(Console& console, Arguments& arguments);
 Reply run_rotate(Console& console, Arguments& arguments);

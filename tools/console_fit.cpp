@@ -9,15 +9,19 @@
 namespace dowel::tools {
 namespace {
 
-/// Widest cylinder of the bore that the shaft does not fill, or the narrowest that it has.
+/// The cylinder of the bore that the shaft goes with: one that it is drawn to fit, else the
+/// narrowest that it goes into, else the narrowest of all.
 double bore_of(const Feature& shaft, const Feature& hole) {
-  double bore_mm = hole.diameter_mm;
+  double bore_mm = 0.0;
   for (const HoleSegment& segment : hole.segments) {
     if (segment.type != HoleSegment::Type::Cylinder) continue;
-    const bool is_nearer = fit_as_drawn(segment.diameter_mm, shaft.diameter_mm).has_value();
-    if (is_nearer) bore_mm = segment.diameter_mm;
+    if (fit_as_drawn(segment.diameter_mm, shaft.diameter_mm)) return segment.diameter_mm;
+    const bool goes_in = segment.diameter_mm >= shaft.diameter_mm;
+    if (goes_in && (bore_mm == 0.0 || segment.diameter_mm < bore_mm)) {
+      bore_mm = segment.diameter_mm;
+    }
   }
-  return bore_mm;
+  return bore_mm > 0.0 ? bore_mm : hole.diameter_mm;
 }
 
 std::string thread_text(double nominal_mm) {
@@ -54,7 +58,7 @@ std::string drawn_fit_text(const Feature& shaft, const Feature& hole) {
   text += play_mm < 0.0 ? "too thick by " + length_text(-play_mm) + " mm"
                         : "play " + length_text(play_mm) + " mm as drawn";
   const MetricThread* core = thread_of_core_hole(bore_mm);
-  if (core != nullptr && play_mm >= 0.0) {
+  if (core != nullptr && play_mm >= 0.0 && likely_thread_of_hole(bore_mm) != nullptr) {
     text += "; the hole is the core of a thread " + thread_text(core->nominal_mm);
   }
   return text;

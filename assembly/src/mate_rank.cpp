@@ -29,6 +29,7 @@ class RowSpace {
   };
 
   Added add(MatrixXd more, double none, double some) {
+    if (more.size() == 0) return {};  // nothing is asked, or nobody can move
     // Twice: the first leaves rounding of the size of the rows.
     for (int pass = 0; pass < 2; ++pass) more -= (more * rows_.transpose()) * rows_;
     const Eigen::JacobiSVD<MatrixXd> svd(more, Eigen::ComputeThinV);

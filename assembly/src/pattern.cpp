@@ -135,7 +135,7 @@ std::vector<const Feature*> feet_of(const Element& element) {
         !is_parallel(feature.direction, bottom->direction)) {
       continue;
     }
-    if (is_hole && thread_of_core_hole(feature.diameter_mm) != nullptr) continue;
+    if (is_hole && likely_thread_of_hole(feature.diameter_mm) != nullptr) continue;
     const double start_mm = feature.origin.z() - bottom->origin.z();
     const double end_mm = start_mm + feature.depth_mm * feature.direction.z();
     const bool starts_there = std::abs(start_mm) <= kCoaxial_mm;
@@ -145,20 +145,14 @@ std::vector<const Feature*> feet_of(const Element& element) {
   return feet;
 }
 
-std::vector<PatternWay> pattern_ways(const Element& element, const Element& part,
-                                     const Feature& at) {
-  const Feature* bottom = bottom_face(element);
-  std::vector<Node> feet;
-  for (const Feature* foot : feet_of(element)) {
-    feet.push_back({foot->name, foot->origin.head<2>()});
-  }
-  if (bottom == nullptr || feet.empty() || at.kind != FeatureKind::Hole) return {};
-  const Pose X_BN = upright_pose(at.origin, -at.direction, Pose());
-  const std::vector<Node> nodes = nodes_around(part, at, X_BN);
+namespace {
 
+/// The ways in which all of `feet` are on nodes, one of them on the origin of N.
+std::vector<PatternWay> ways_with(const std::vector<Node>& feet, const std::vector<Node>& nodes,
+                                  const Feature& bottom, const Pose& X_BN) {
   std::vector<PatternWay> ways;
   const auto add = [&](const Node& foot, double turn_rad) {
-    const Pose X_NE = standing_on_node(*bottom, foot.at, turn_rad);
+    const Pose X_NE = standing_on_node(bottom, foot.at, turn_rad);
     std::vector<FeaturePair> pairs = pairs_on_nodes(feet, X_NE, nodes);
     if (!pairs.empty()) ways.push_back({X_BN * X_NE, turn_rad, std::move(pairs)});
   };
@@ -175,6 +169,25 @@ std::vector<PatternWay> pattern_ways(const Element& element, const Element& part
       add(foot, turn_between(arm, node.at));
     }
   }
+  return ways;
+}
+
+}  // namespace
+
+std::vector<PatternWay> pattern_ways(const Element& element, const Element& part,
+                                     const Feature& at) {
+  const Feature* bottom = bottom_face(element);
+  if (bottom == nullptr || at.kind != FeatureKind::Hole) return {};
+  std::vector<Node> feet;
+  std::vector<Node> plain_feet;
+  for (const Feature* foot : feet_of(element)) {
+    feet.push_back({foot->name, foot->origin.head<2>()});
+    if (thread_of_core_hole(foot->diameter_mm) == nullptr) plain_feet.push_back(feet.back());
+  }
+  const Pose X_BN = upright_pose(at.origin, -at.direction, Pose());
+  const std::vector<Node> nodes = nodes_around(part, at, X_BN);
+  std::vector<PatternWay> ways = ways_with(feet, nodes, *bottom, X_BN);
+  if (ways.empty()) ways = ways_with(plain_feet, nodes, *bottom, X_BN);
   const auto order_of = [&](const PatternWay& way) {
     const auto on_at = std::ranges::find(way.pairs, at.name, &FeaturePair::fixed);
     return std::pair(std::round(way.turn_rad / kParallel_rad), on_at - way.pairs.begin());

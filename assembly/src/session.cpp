@@ -100,17 +100,6 @@ std::vector<PatternWay> Session::pattern(std::string_view element_name, const Fe
   return pattern_ways(impl_->element(element_name), part, *at.feature);
 }
 
-MoveReport Session::place(std::string_view element_name, std::string_view name, const Pose& X_WI,
-                          std::string_view command) {
-  return impl_->place(element_name, name, X_WI, std::nullopt, command);
-}
-
-MoveReport Session::place_at(std::string_view element_name, std::string_view name, const Pose& X_WI,
-                             const FeatureName& at, std::string_view command) {
-  impl_->feature(at);
-  return impl_->place(element_name, name, X_WI, at, command);
-}
-
 MoveReport Session::insert(const InsertRequest& request, std::string_view command) {
   const Instance before = impl_->movable(request.moving.instance);
   if (request.fixed.instance == before.name) {

@@ -52,9 +52,10 @@ struct Session::Impl {
   std::shared_ptr<const FacetedSolid> solid(std::string_view name);
   PlacedFeature feature(const FeatureName& name);
 
-  /// Places an instance; with `at`, mates it with that part.
-  MoveReport place(std::string_view element_name, std::string_view name, const Pose& X_WI,
-                   const std::optional<FeatureName>& at, std::string_view command);
+  /// Adds an instance to `next`, checked; a refused one is not added.
+  MoveReport add(ProjectState& next, const Placement& placement);
+  /// Makes `next`, with the copies of elements that it needs.
+  void commit_placed(std::string_view command, const ProjectState& next);
   /// Adds to `next` the mates of `placed` with the part of `at`, and returns them.
   std::vector<Mate> mate_in_place(ProjectState& next, const Instance& placed,
                                   const FeatureName& at);

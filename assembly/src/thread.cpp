@@ -110,7 +110,7 @@ std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT
         reliefs.push_back({.start = hole.origin + stretch.from_mm * hole.direction,
                            .direction = hole.direction,
                            .length_mm = stretch.to_mm - stretch.from_mm,
-                           .radius_mm = 0.5 * thread->nominal_mm});
+                           .radius_mm = 0.5 * shaft.diameter_mm});
       }
     }
   }
@@ -123,7 +123,7 @@ bool may_form_thread(const Element& tapped, const Element& screw) {
     return std::ranges::any_of(tapped.features, [&](const Feature& hole) {
       return hole.kind == FeatureKind::Hole &&
              std::ranges::any_of(hole.segments, [&](const HoleSegment& segment) {
-               return is_core_hole(shaft, segment);
+               return is_core_hole(shaft.diameter_mm, segment);
              });
     });
   });

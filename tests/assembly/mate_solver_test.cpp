@@ -334,6 +334,21 @@ TEST_CASE("near-singular mates get a right answer or a name, never a jump", "[de
   }
 }
 
+TEST_CASE("mates between held bodies hold or conflict, and move nothing", "[degenerate]") {
+  const Vector z = Vector::UnitZ();
+  MateProblem problem;
+  problem.bodies = {{Pose(), true}, {Pose::from_translation({0, 0, 3}), true}};
+  problem.mates = {{seat_joint(1, 0, frame({0, 0, 0}, z), frame({0, 0, 3}, z))},
+                   {seat_joint(1, 0, frame({0, 0, 0}, z), frame({0, 0, 0}, z))}};
+  const MateSolution solution = solve_mates(problem);
+  CHECK(solution.mates[0].status == MateStatus::Redundant);
+  CHECK(solution.mates[1].status == MateStatus::Conflicting);
+  CHECK(solution.mates[1].off_mm == Approx(3.0));
+  CHECK(solution.X_WB[1] == problem.bodies[1].X_WB);
+  CHECK(solution.freedoms.cols() == 0);
+  CHECK(solve_mates({}).X_WB.empty());
+}
+
 TEST_CASE("a body that must turn far for its second hole turns, and comes out right",
           "[property]") {
   const int degrees = GENERATE(0, 45, 90, 135, 179, 180, 181, 270);

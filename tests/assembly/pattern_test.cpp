@@ -27,7 +27,7 @@ Element block_on(const Points& feet) {
   Element element;
   element.features = {testing::face_feature("bottom", {0, 0, -5}, down, 4000),
                       testing::face_feature("top", {0, 0, 15}, -down, 4000),
-                      testing::hole_feature("node", {0, 0, 15}, down, {{10.106, 20}}, true),
+                      testing::hole_feature("node", {11, 7, 15}, down, {{10.106, 20}}, true),
                       testing::hole_feature("pocket", {9, 9, 15}, down, {{8, 5}}, false)};
   for (std::size_t i = 0; i < feet.size(); ++i) {
     element.features.push_back(testing::hole_feature(
@@ -127,6 +127,20 @@ TEST_CASE("ways are sorted by turn, a quarter turn is one to the bit") {
   }
   CHECK(ways[0].pairs[0].fixed == "2 2");
   CHECK(ways[0].X_BE == Pose::from_translation({100, 100, 5}));
+}
+
+TEST_CASE("holes of whole millimetres stand on nodes, unless they cannot and may be threads") {
+  const Element part = grid(5, 5, Pose());
+  const auto& at = *part.find_feature("2 2");
+  Element element = block_on({{-20, -20}, {20, -20}, {-20, 20}, {20, 20}});
+  element.features[4].segments[0].diameter_mm = 12.0;  // a fit, or the tap drill of M14
+  element.features[4].diameter_mm = 12.0;
+  CHECK(pattern_ways(element, part, at).size() == 16);
+  CHECK(pattern_ways(element, part, at)[0].pairs.size() == 4);
+  element.features[4].origin.x() += 3.0;
+  const auto ways = pattern_ways(element, part, at);
+  CHECK(ways.size() == 12);
+  CHECK(ways[0].pairs.size() == 3);
 }
 
 TEST_CASE("a part is held by the pair that was asked for and the one farthest from it") {

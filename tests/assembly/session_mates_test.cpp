@@ -44,6 +44,29 @@ dowel::ProjectElement bar_element() {
        testing::face_feature("right", {50, 0, 10}, Eigen::Vector3d::UnitX(), 1200.0)});
 }
 
+/// 200 x 60 x 40 with a groove along x, 14 wide and 12 deep, in its features alone.
+dowel::ProjectElement rail_element() {
+  dowel::Feature groove;
+  groove.name = "slot1";
+  groove.kind = dowel::FeatureKind::Slot;
+  groove.origin = {0, 0, 40};
+  groove.direction = -Eigen::Vector3d::UnitZ();
+  groove.diameter_mm = 14.0;
+  groove.depth_mm = 12.0;
+  groove.slot.emplace();
+  groove.slot->length_mm = 200.0;
+  return testing::element_of("T/rail", testing::box({200, 60, 80}), {groove});
+}
+
+/// 40 x 14 x 20, stands on z = -10.
+dowel::ProjectElement key_element() {
+  return testing::element_of(
+      "T/key", testing::box({40, 14, 20}),
+      {testing::face_feature("bottom", {0, 0, -10}, -Eigen::Vector3d::UnitZ(), 560.0),
+       testing::face_feature("front", {0, -7, 0}, -Eigen::Vector3d::UnitY(), 800.0),
+       testing::face_feature("back", {0, 7, 0}, Eigen::Vector3d::UnitY(), 800.0)});
+}
+
 struct Workshop {
   testing::TemporaryFolder folder;
   Session session{Project()};
@@ -52,12 +75,13 @@ struct Workshop {
     testing::write_fixture_catalog(folder / "catalog.db");
     {
       Catalog catalog(folder / "catalog.db", Catalog::Access::ReadWrite);
-      const auto bar = bar_element();
-      dowel::SourceRecord source;
-      source.path = bar.element.source;
-      source.status = "ok";
-      const std::vector<dowel::ElementRecord> records{{bar.element, *bar.solid, bar.brep}};
-      catalog.put(source, records);
+      for (const auto& element : {bar_element(), rail_element(), key_element()}) {
+        dowel::SourceRecord source;
+        source.path = element.element.source;
+        source.status = "ok";
+        const std::vector<dowel::ElementRecord> records{{element.element, *element.solid, {}}};
+        catalog.put(source, records);
+      }
     }
     session.use_catalog(
         std::make_shared<const Catalog>(folder / "catalog.db", Catalog::Access::ReadOnly));
@@ -222,6 +246,26 @@ TEST_CASE("angle, fix and seat hold what they say, and go by unmate") {
   shop.session.undo(1);
   CHECK(shop.session.state() == state);
   CHECK(shop.session.project().replay() == state);
+}
+
+TEST_CASE("a key in a slot slides along it and nothing else") {
+  Workshop shop;
+  shop.session.set_mode(dowel::CheckMode::Off, "off");
+  shop.place("T/rail", "RAIL", turned(30, {0, 0, 500}));
+  shop.session.set_grounded("RAIL", true, "ground");
+  shop.place("T/key", "KEY", turned(190, {50, 20, 700}));
+  REQUIRE_FALSE(shop.mate(MateKind::KeyInSlot, {"KEY", "bottom"}, {"RAIL", "slot1"}).refused);
+  const auto left = shop.session.freedoms("KEY").freedoms;
+  REQUIRE(left.size() == 1);
+  CHECK(left[0].kind == Freedom::Kind::Slide);
+  const Eigen::Vector3d run(std::cos(std::numbers::pi / 6), 0.5, 0);
+  CHECK((left[0].axis_W - run).norm() < 1e-9);
+  // On the floor, in the middle, where it is along the slot, turned least: by 20 degrees back.
+  const Pose X = shop.session.instance("KEY").X_WI;
+  CHECK(X.translation().z() == Approx(538.0).margin(testing::kExact_mm));
+  CHECK(std::abs(X.translation().cross(run).z()) < testing::kExact_mm);
+  CHECK((X.rotation() * Eigen::Vector3d::UnitX()).dot(run) == Approx(-1.0));
+  CHECK(shop.session.project().replay() == shop.session.state());
 }
 
 TEST_CASE("a project of version 1 opens, and is one of this version after that", "[golden]") {

@@ -141,7 +141,7 @@ TEST_CASE("bad lines name file, line and column, and what was expected") {
       {"place T/block-40 at 1 2 1e999", "1:25", "expected three coordinates"},
       {"place T/block-40 at 1 2 1e6", "1:1", "beyond"},
       {"place T/block-40 as a.b", "1:1", "dot"},
-      {"place T/block-40 sideways", "1:18", "expected `as`, `at`, `on` or `rot`"},
+      {"place T/block-40 sideways", "1:18", "expected `as`, `at`, `on`, `pattern` or `rot`"},
       {"place T/block-40 rot 90 rot 90", "1:25", "each once"},
       {"place T/block-40 rot 400", "1:22", "at most 360"},
       {"place T/block-40 at NOBODY.top", "1:21", "no instance is called \"NOBODY\""},
@@ -303,7 +303,7 @@ TEST_CASE("every example of the help is a line that the console understands") {
     CHECK((run.exit_code == 0 || run.exit_code == 3));
     ++examples;
   }
-  CHECK(examples == 28);
+  CHECK(examples == 30);
 }
 
 TEST_CASE("exports appear whole, and a disk without room damages nothing", "[fault]") {

@@ -30,12 +30,13 @@ struct PatternWay {
 const Feature* bottom_face(const Element& element);
 
 /// The holes and shafts by which an element is held on what it stands on: square to its bottom and
-/// reaching it, but for core holes of threads, which hold what stands on the element.
+/// reaching it, but for what is surely the core hole of a thread, which holds what stands on it.
 std::vector<const Feature*> feet_of(const Element& element);
 
 /// All ways of standing `element` on `part` so that each of its feet is on a hole that opens in the
 /// plane of hole `at`, and one of them on `at` itself. Sorted by turn, then by the foot on `at`. An
-/// element with one foot has one way, and can be turned. None where it has no bottom or no feet, or
+/// element with one foot has one way, and can be turned. Where no way has all feet on holes, those
+/// that could be core holes of threads need not be. None where it has no bottom or no feet, or
 /// where the holes do not match within kCoaxial_mm.
 std::vector<PatternWay> pattern_ways(const Element& element, const Element& part,
                                      const Feature& at);

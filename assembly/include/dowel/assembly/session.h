@@ -58,6 +58,14 @@ struct MoveReport {
   std::optional<MateConflict> conflict;  ///< why it cannot be made; then it is refused
 };
 
+/// One of several instances that are placed together.
+struct Placement {
+  std::string element;
+  std::string name;  ///< empty: chosen
+  Pose X_WI;
+  std::vector<Mate> mates;  ///< that hold there; numbers do not matter
+};
+
 /// A mate to make beside those that are there. All but insert keep the present place in what they
 /// leave free.
 struct MateRequest {
@@ -143,6 +151,10 @@ class Session {
   /// would place it (see `matching_pairs`), by `insert` at `at` and `align` farthest from it.
   MoveReport place_at(std::string_view element_name, std::string_view name, const Pose& X_WI,
                       const FeatureName& at, std::string_view command);
+  /// All of them or none: where one is refused, so are the others. Mates may name instances that
+  /// come before in the list. Without a command it only tells what would come of it.
+  std::vector<MoveReport> place_all(std::span<const Placement> placements,
+                                    std::optional<std::string_view> command);
   /// Checked where it ends. A shaft thicker than the bore is Error{InvalidInput} with the numbers.
   MoveReport insert(const InsertRequest& request, std::string_view command);
   /// Makes a mate beside those that the instance has, and keeps them. The instance moves alone

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dowel/assembly/fastening.h"
+#include "dowel/assembly/session.h"
+#include "dowel/assembly/stack.h"
+
+namespace dowel {
+
+/// Spacers from the project and the catalogue that reach a height on a hole.
+struct StackPlan {
+  FeatureName on;
+  double height_mm = 0.0;
+  /// Ways, best first; never empty. See `stack_choices`.
+  std::vector<std::vector<Spacer>> ways;
+};
+
+/// Elements named spacer-... of the family of the part below, or of any where it has none. Throws
+/// Error{InvalidInput} where they do not reach the height, with the heights that there are.
+StackPlan plan_stack(Session& session, double height_mm, const FeatureName& on);
+
+/// Places the spacers of `way` (from 0) on each other, mated hole on hole; without a command only
+/// tells what would come of it.
+std::vector<MoveReport> stack(Session& session, const StackPlan& plan, std::size_t way,
+                              std::optional<std::string_view> command);
+
+/// What fastens the parts along a hole.
+struct FasteningPlan {
+  FeatureName hole;
+  double seat_mm = 0.0;            ///< depth at which the head, or its washer, sits
+  std::vector<FeatureName> holes;  ///< on the axis, by depth; what `Fastening::thread` counts
+  std::vector<Fastening> ways;     ///< best first; never empty
+};
+
+/// Screws, washers and nuts so named, of the family of the part, or of any where it has none. The
+/// head goes into the counterbore of the hole where it has one that is wide enough, else onto its
+/// face, with a washer where there is one. Throws Error{InvalidInput} with the reason and numbers
+/// where nothing fastens.
+FasteningPlan plan_fastening(Session& session, const FeatureName& hole);
+
+/// Places screw, washer and nut of `way` (from 0), mated with the hole and each other; without a
+/// command only tells what would come of it.
+std::vector<MoveReport> fasten(Session& session, const FasteningPlan& plan, std::size_t way,
+                               std::optional<std::string_view> command);
+
+}  // namespace dowel
