@@ -47,6 +47,7 @@ std::string family_of(Session& session, const std::string& instance) {
 /// Names for new instances of `elements`, all different.
 std::vector<std::string> new_names(Session& session, const std::vector<std::string>& elements) {
   std::vector<std::string> names;
+  names.reserve(elements.size());
   for (const std::string& element : elements) {
     names.push_back(free_name(element, [&](const std::string& name) {
       return session.state().find(name) != nullptr || std::ranges::count(names, name) > 0;
