@@ -20,7 +20,8 @@ namespace testing = dowel::testing;
 
 namespace {
 
-using Integer = boost::multiprecision::cpp_int;
+using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>,
+                                              boost::multiprecision::et_off>;
 using Row = std::vector<Integer>;
 using IntVector = Eigen::Matrix<long long, 3, 1>;
 using IntMatrix = Eigen::Matrix<long long, 3, 3>;
@@ -111,7 +112,7 @@ struct Equation {
 struct ExactMate {
   std::size_t a = 0;
   std::size_t b = 0;
-  ExactFrame G;
+  ExactFrame frame;  ///< G
   IntVector p_F;
   IntVector z_F;  ///< for angles
   bool tilt = false;
@@ -122,13 +123,13 @@ struct ExactMate {
   std::vector<Equation> equations() const {
     std::vector<Equation> all;
     const IntVector zero = IntVector::Zero();
-    if (tilt) all.push_back({G.axes.col(0), zero});
-    if (tilt) all.push_back({G.axes.col(1), zero});
-    if (spin) all.push_back({G.axes.col(2), zero});
-    if (angle) all.push_back({z_F.cross(G.axes.col(2)), zero});
+    if (tilt) all.push_back({frame.axes.col(0), zero});
+    if (tilt) all.push_back({frame.axes.col(1), zero});
+    if (spin) all.push_back({frame.axes.col(2), zero});
+    if (angle) all.push_back({z_F.cross(frame.axes.col(2)), zero});
     for (int i = 0; i < 3; ++i) {
       if (slide[static_cast<std::size_t>(i)]) {
-        all.push_back({p_F.cross(IntVector(G.axes.col(i))), G.axes.col(i)});
+        all.push_back({p_F.cross(IntVector(frame.axes.col(i))), frame.axes.col(i)});
       }
     }
     return all;
@@ -141,7 +142,7 @@ ExactMate random_mate(testing::RandomGeometry& random, std::size_t bodies) {
   do {
     mate.b = random.index(static_cast<std::uint32_t>(bodies));
   } while (mate.b == mate.a);
-  mate.G = random_frame(random);
+  mate.frame = random_frame(random);
   switch (random.index(7)) {
     case 0:  // insert
       mate.tilt = true;
@@ -167,15 +168,15 @@ ExactMate random_mate(testing::RandomGeometry& random, std::size_t bodies) {
       mate.tilt = mate.spin = true;
       mate.slide = {true, true, random.coin()};
   }
-  mate.p_F = mate.G.origin;
+  mate.p_F = mate.frame.origin;
   for (int i = 0; i < 3; ++i) {
     if (!mate.slide[static_cast<std::size_t>(i)]) {
-      mate.p_F += static_cast<long long>(random.index(9)) * mate.G.axes.col(i);
+      mate.p_F += static_cast<long long>(random.index(9)) * mate.frame.axes.col(i);
     }
   }
   do {
     mate.z_F = random_frame(random).axes.col(2);
-  } while (mate.angle && mate.z_F.cross(IntVector(mate.G.axes.col(2))).isZero());
+  } while (mate.angle && mate.z_F.cross(IntVector(mate.frame.axes.col(2))).isZero());
   return mate;
 }
 
@@ -226,7 +227,7 @@ bool is_settled(const ExactMate& mate, int axis, const ExactRows& rows, std::siz
 }
 
 Joint joint_of(const ExactMate& mate, const std::vector<Pose>& X_WB) {
-  const Pose X_WG = mate.G.pose();
+  const Pose X_WG = mate.frame.pose();
   const Eigen::Vector3d origin = mate.p_F.cast<double>();
   Joint joint;
   joint.a = mate.a;
@@ -237,7 +238,7 @@ Joint joint_of(const ExactMate& mate, const std::vector<Pose>& X_WB) {
   Pose X_WF(X_WG.rotation(), origin);
   if (mate.angle) {
     const Eigen::Vector3d z_F = mate.z_F.cast<double>().normalized();
-    const Eigen::Vector3d z_G = mate.G.axes.col(2).cast<double>().normalized();
+    const Eigen::Vector3d z_G = mate.frame.axes.col(2).cast<double>().normalized();
     joint.angle_rad = std::atan2(z_F.cross(z_G).norm(), z_F.dot(z_G));
     X_WF = dowel::frame_on_axis(origin, z_F, Eigen::Vector3d::UnitX());
   }

@@ -68,8 +68,8 @@ struct MateSolution {
 /// counts less than kMateDependent (and than the mates' own slack could feign) is none, what counts
 /// less than kMateIndependent is NearlyRedundant.
 ///
-/// Deterministic. Cost: cubic in the bodies that may move. Expects: joints between two bodies of the
-/// problem; finite poses.
+/// Deterministic. Cost: cubic in the bodies that may move. Expects: joints between two bodies of
+/// the problem; finite poses.
 MateSolution solve_mates(const MateProblem& problem);
 
 }  // namespace dowel
