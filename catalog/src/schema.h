@@ -32,9 +32,9 @@ inline constexpr std::int32_t kBoltCircleVersion = 4;
 inline constexpr std::int32_t kInstanceVersion = 5;
 
 struct SchemaTable {
-  const char* name;
-  const char* sql;         ///< as sqlite_schema keeps it, to the letter
-  std::int32_t since = 1;  ///< version that brought it
+  const char* name = nullptr;
+  const char* sql = nullptr;  ///< as sqlite_schema keeps it, to the letter
+  std::int32_t since = 1;     ///< version that brought it
 };
 
 /// Every table that a catalogue of this version has. They are columns rather than documents so that

@@ -51,7 +51,9 @@ struct JsonNode {
         if (!known.empty()) known += ", ";
         known += name;
       }
-      fail("unknown key \"" + key + "\", expected one of: " + known);
+      std::string problem = "unknown key \"";
+      problem.append(key).append("\", expected one of: ").append(known);
+      fail(problem);
     }
   }
   void expect_list() const {

@@ -11,7 +11,7 @@ namespace dowel::library {
 /// Density: general knowledge, to about 1 %.
 struct Material {
   std::string_view name;
-  double density_kg_per_m3;
+  double density_kg_per_m3 = 0.0;
 };
 inline constexpr Material kCastIron{"cast iron GJL-250", 7200.0};
 inline constexpr Material kSteel{"steel C45", 7850.0};
@@ -23,44 +23,44 @@ inline constexpr Material kAluminium{"aluminium EN AW-6082", 2700.0};
 /// ISO metric thread and the holes that go with it.
 struct ThreadSize {
   std::string_view name;
-  double diameter_mm;
-  double pitch_mm;
-  double minor_diameter_mm;     ///< D1 = d - 1.0825318 P, to a micrometre
-  double clearance_hole_mm;     ///< ISO 273, medium
-  double counterbore_mm;        ///< like DIN 974-1, row 1
-  double counterbore_depth_mm;  ///< head height and about 1 mm
+  double diameter_mm = 0.0;
+  double pitch_mm = 0.0;
+  double minor_diameter_mm = 0.0;     ///< D1 = d - 1.0825318 P, to a micrometre
+  double clearance_hole_mm = 0.0;     ///< ISO 273, medium
+  double counterbore_mm = 0.0;        ///< like DIN 974-1, row 1
+  double counterbore_depth_mm = 0.0;  ///< head height and about 1 mm
 };
 
 /// Socket head cap screw like ISO 4762.
 struct SocketHead {
-  double head_diameter_mm;  ///< dk
-  double head_height_mm;    ///< k
-  double key_size_mm;       ///< s
-  double key_depth_mm;      ///< t
+  double head_diameter_mm = 0.0;  ///< dk
+  double head_height_mm = 0.0;    ///< k
+  double key_size_mm = 0.0;       ///< s
+  double key_depth_mm = 0.0;      ///< t
 };
 
 /// Hexagon nut like ISO 4032 and the one 1.5 d high like DIN 6330.
 struct NutSize {
-  double height_mm;       ///< m of ISO 4032
-  double width_mm;        ///< s of both
-  double high_height_mm;  ///< m of DIN 6330
+  double height_mm = 0.0;       ///< m of ISO 4032
+  double width_mm = 0.0;        ///< s of both
+  double high_height_mm = 0.0;  ///< m of DIN 6330
 };
 
 /// Plain washer like ISO 7089 and the heavy one like DIN 6340.
 struct WasherSize {
-  double inner_mm;
-  double outer_mm;
-  double height_mm;
-  double heavy_inner_mm;
-  double heavy_outer_mm;
-  double heavy_height_mm;
+  double inner_mm = 0.0;
+  double outer_mm = 0.0;
+  double height_mm = 0.0;
+  double heavy_inner_mm = 0.0;
+  double heavy_outer_mm = 0.0;
+  double heavy_height_mm = 0.0;
 };
 
 struct FastenerSize {
-  ThreadSize thread;
-  SocketHead socket;
-  NutSize nut;
-  WasherSize washer;
+  ThreadSize thread{};
+  SocketHead socket{};
+  NutSize nut{};
+  WasherSize washer{};
 };
 
 /// M6 to M16 coarse, and M12x1.5. Sources: ISO 273 clearance holes; ISO 4762, 4032, 7089, DIN 6330
@@ -98,10 +98,10 @@ const FastenerSize& fastener_size(std::string_view thread);
 
 /// T-slot like ISO 299 (the numbers of BS 2485).
 struct TeeSlotSize {
-  double throat_mm;           ///< a
-  double undercut_mm;         ///< b, the middle of its range
-  double undercut_height_mm;  ///< c, likewise
-  double depth_mm;            ///< H, likewise
+  double throat_mm = 0.0;           ///< a
+  double undercut_mm = 0.0;         ///< b, the middle of its range
+  double undercut_height_mm = 0.0;  ///< c, likewise
+  double depth_mm = 0.0;            ///< H, likewise
 };
 inline constexpr TeeSlotSize kTeeSlot12{12.0, 20.0, 8.5, 22.0};
 inline constexpr TeeSlotSize kTeeSlot14{14.0, 24.0, 10.0, 26.0};
@@ -110,22 +110,22 @@ inline constexpr TeeSlotSize kTeeSlot14{14.0, 24.0, 10.0, 26.0};
 /// as its foot it has no neck.
 struct TeeNutSize {
   std::string_view thread;
-  double slot_mm;
-  double width_mm;        ///< e, width and length of the foot
-  double height_mm;       ///< h
-  double foot_height_mm;  ///< k
+  double slot_mm = 0.0;
+  double width_mm = 0.0;        ///< e, width and length of the foot
+  double height_mm = 0.0;       ///< h
+  double foot_height_mm = 0.0;  ///< k
 };
 inline constexpr double kTeeNutNeckPlay_mm = 0.3;
 
 /// Locating pin like DIN 6321, forms B (round) and C (diamond). The shank is pressed in: it is
 /// modelled at its nominal diameter, its hole too.
 struct PinSize {
-  double diameter_mm;      ///< nominal, g6
-  double fit_diameter_mm;  ///< middle of g6
-  double head_length_mm;
-  double shank_diameter_mm;  ///< n6
-  double shank_length_mm;
-  double land_mm;  ///< form C
+  double diameter_mm = 0.0;      ///< nominal, g6
+  double fit_diameter_mm = 0.0;  ///< middle of g6
+  double head_length_mm = 0.0;
+  double shank_diameter_mm = 0.0;  ///< n6
+  double shank_length_mm = 0.0;
+  double land_mm = 0.0;  ///< form C
 };
 /// Half angle of the lead-in cone of a pin, in degrees, and its length as a part of the head.
 inline constexpr double kPinLeadIn_deg = 15.0;
@@ -133,25 +133,25 @@ inline constexpr double kPinLeadInShare = 1.0 / 3.0;
 
 /// Clamp strap like DIN 6314 (general knowledge): slot, length, width, height.
 struct StrapSize {
-  double slot_mm;
-  double slot_length_mm;  ///< overall
-  double length_mm;
-  double width_mm;
-  double height_mm;
+  double slot_mm = 0.0;
+  double slot_length_mm = 0.0;  ///< overall
+  double length_mm = 0.0;
+  double width_mm = 0.0;
+  double height_mm = 0.0;
 };
 
 /// Stud like DIN 6379 (general knowledge): length, thread at the lower and at the upper end.
 struct StudSize {
-  double length_mm;
-  double lower_thread_mm;
-  double upper_thread_mm;
+  double length_mm = 0.0;
+  double lower_thread_mm = 0.0;
+  double upper_thread_mm = 0.0;
 };
 
 /// Parallel pin, hardened, like ISO 8734, modelled at its nominal diameter.
 struct DowelPinSize {
-  double diameter_mm;
-  double length_mm;
-  double chamfer_mm;
+  double diameter_mm = 0.0;
+  double length_mm = 0.0;
+  double chamfer_mm = 0.0;
 };
 
 }  // namespace dowel::library

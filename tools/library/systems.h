@@ -12,62 +12,63 @@ namespace dowel::library {
 
 /// A node of a hole system: locating bore H7 over a coaxial thread.
 struct NodeSize {
-  double bore_mm;
-  double bore_depth_mm;    ///< the thread starts here, 1.25 d
-  double thread_depth_mm;  ///< full thread of a blind node ends here
+  double bore_mm = 0.0;
+  double bore_depth_mm = 0.0;    ///< the thread starts here, 1.25 d
+  double thread_depth_mm = 0.0;  ///< full thread of a blind node ends here
 };
 
 /// What screws a turned element in, from its seat down: a shank that locates, a relief, a thread.
 struct FootSize {
-  double shank_mm;         ///< middle of g6
-  double shank_length_mm;  ///< 0: no shank
-  double relief_diameter_mm;
-  double relief_length_mm;
-  double length_mm;
+  double shank_mm = 0.0;         ///< middle of g6
+  double shank_length_mm = 0.0;  ///< 0: no shank
+  double relief_diameter_mm = 0.0;
+  double relief_length_mm = 0.0;
+  double length_mm = 0.0;
 };
 
 /// Fit screw: below its shank and the relief of the foot comes a thread of this length.
 struct FitScrewSizes {
-  double thread_length_mm;
+  double thread_length_mm = 0.0;
   std::vector<int> lengths_mm;
 };
 
 /// Bodies of turned elements: diameter, width across two flats.
 struct TurnedSize {
-  double diameter_mm;
-  double wrench_mm;
+  double diameter_mm = 0.0;
+  double wrench_mm = 0.0;
 };
 
 struct PlateSize {
-  int columns;  ///< nodes along x; slots along y where the system has no nodes but crossing slots
-  int rows;     ///< nodes along y; slots along x
+  /// Nodes along x; where the system has crossing slots instead, those that run along y.
+  int columns = 0;
+  int rows = 0;            ///< nodes along y; slots along x
   double length_mm = 0.0;  ///< along x, where no columns tell it
 };
 
 struct AnglePlateSize {
-  int columns;  ///< of nodes or tapped holes on the upright, across
-  int rows;     ///< upwards
-  double foot_height_mm;
+  int columns = 0;  ///< of nodes or tapped holes on the upright, across
+  int rows = 0;     ///< upwards
+  double foot_height_mm = 0.0;
 };
 
 /// Carrier of locating pins: bore for the shank, depth.
 struct PinHolderSize {
-  double bore_mm;
-  double depth_mm;
+  double bore_mm = 0.0;
+  double depth_mm = 0.0;
 };
 
 struct VeeBlockSize {
-  double width_mm;
-  double angle_deg;
-  double height_mm;      ///< 0.75 width and 10 mm
-  double screw_seat_mm;  ///< height of the counterbore's floor
+  double width_mm = 0.0;
+  double angle_deg = 0.0;
+  double height_mm = 0.0;      ///< 0.75 width and 10 mm
+  double screw_seat_mm = 0.0;  ///< height of the counterbore's floor
 };
 
 /// Post of a swing clamp: base, post that the arm turns about, thread for its nut.
 struct SwingClampSize {
-  double base_height_mm;
-  double post_length_mm;
-  double thread_length_mm;
+  double base_height_mm = 0.0;
+  double post_length_mm = 0.0;
+  double thread_length_mm = 0.0;
 };
 
 /// Socket head cap screws of one thread, lengths of ISO 888.
@@ -79,17 +80,17 @@ struct ScrewSizes {
 /// Key between a slot and the key slot of an element, half of its height in each; the upper half is
 /// as wide as the key slot.
 struct KeySize {
-  double width_mm;
-  double length_mm;
-  double height_mm;
+  double width_mm = 0.0;
+  double length_mm = 0.0;
+  double height_mm = 0.0;
 };
 
 struct System {
   std::string_view name;
   std::string_view source;  ///< where its dimensions come from
   std::string_view thread;
-  double pitch_mm;
-  double plate_height_mm;
+  double pitch_mm = 0.0;
+  double plate_height_mm = 0.0;
   std::optional<NodeSize> node;     ///< a hole system
   std::optional<TeeSlotSize> slot;  ///< a slot system
   double key_width_mm = 0.0;        ///< of the key slot below an element
@@ -98,8 +99,8 @@ struct System {
   TurnedSize column;
   TurnedSize rest_pad;
   TurnedSize pin_holder;
-  double swing_post_mm;  ///< diameter, h9
-  double swing_arm_thickness_mm;
+  double swing_post_mm = 0.0;  ///< diameter, h9
+  double swing_arm_thickness_mm = 0.0;
 
   std::vector<PlateSize> plates;
   std::vector<int> riser_heights_mm;
