@@ -207,6 +207,9 @@ FasteningChoices choose(std::span<const BoreStretch> stretches, std::span<const 
   const auto& sizes = metric_threads();
   // The thickest thread first: it is what the bore was made for.
   for (auto size = sizes.rbegin(); size != sizes.rend() && choices.ways.empty(); ++size) {
+    // A screw is told by its nominal diameter; the coarse pitch keeps it further from a thread's
+    // end.
+    if (thread_of_shaft(size->nominal_mm) != &*size) continue;
     const auto wanted = wanted_lengths(stretches, fasteners, *size, options, surely);
     if (!wanted) continue;
     std::string there;
