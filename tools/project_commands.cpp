@@ -17,10 +17,12 @@
 namespace dowel::tools {
 namespace {
 
+/// Given before or after the word, they are the same.
 struct ProjectOptions {
   std::string project;
   std::string catalog;
 };
+using SharedProjectOptions = std::shared_ptr<ProjectOptions>;
 
 void add_options(CLI::App& app, ProjectOptions& options) {
   app.add_option("--project", options.project, "Project file")->type_name("FILE");
@@ -40,21 +42,21 @@ void prepare(Console& console, const ProjectOptions& options, bool may_create) {
   }
 }
 
-struct RunOptions : ProjectOptions {
+struct RunOptions {
   std::string script;
   ScriptOptions how;
 };
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(CLI::App& app, const SharedProjectOptions& project, int& exit_code) {
   CLI::App* run = app.add_subcommand("run", "Runs a script of commands");
   const auto options = std::make_shared<RunOptions>();
   run->add_option("SCRIPT", options->script, "Script file; - for standard input")->required();
-  add_options(*run, *options);
+  add_options(*run, *project);
   run->add_flag("--json", options->how.json, "One JSON object a command");
   run->add_flag("--keep-going", options->how.keep_going, "Go on past errors");
   run->add_flag("--echo", options->how.echo, "Show each command before its reply");
   run->add_flag("--times", options->how.times, "Tell how long each command took");
-  run->callback([options, &exit_code] {
+  run->callback([options, project, &exit_code] {
     const bool from_stdin = options->script == "-";
     // Before the project is touched: a script that is missing or none changes nothing.
     const std::string text = from_stdin ? std::string() : read_file(options->script);
@@ -63,25 +65,28 @@ void add_run(CLI::App& app, int& exit_code) {
       return;
     }
     Console console;
-    prepare(console, *options, true);
+    prepare(console, *project, true);
     std::istringstream lines(text);
     exit_code = from_stdin ? run_script(console, "<stdin>", std::cin, options->how)
                            : run_script(console, options->script, lines, options->how);
   });
 }
 
-struct VerbOptions : ProjectOptions {
+struct VerbOptions {
   std::vector<std::string> words;
   bool json = false;
+  bool needs_project = true;
 };
 
 /// `first`: the verb's own word, or empty where the words hold it.
-void run_verb(const VerbOptions& options, std::string_view first, int& exit_code) {
+void run_verb(const VerbOptions& options, const ProjectOptions& project, std::string_view first,
+              int& exit_code) {
+  if (options.needs_project && project.project.empty()) throw CLI::RequiredError("--project");
   std::vector<Word> words;
   if (!first.empty()) words.push_back({std::string(first), 1, false});
   for (const std::string& word : options.words) words.push_back({word, 1, false});
   Console console;
-  prepare(console, options, false);
+  prepare(console, project, false);
   const Reply reply = console.run(words);
   print_reply(reply, words.front().text, 0, 0.0, {.json = options.json});
   exit_code = reply.has_findings ? kFindings : kDone;
@@ -92,38 +97,39 @@ bool needs_project(std::string_view word) {
   return word != "new" && word != "list" && word != "show";
 }
 
-void add_verb(CLI::App& app, const Command& command, int& exit_code) {
+void add_verb(CLI::App& app, const SharedProjectOptions& project, const Command& command,
+              int& exit_code) {
   CLI::App* verb = app.add_subcommand(std::string(command.word), std::string(command.help));
   const auto options = std::make_shared<VerbOptions>();
-  add_options(*verb, *options);
-  if (needs_project(command.word)) verb->get_option("--project")->required();
+  options->needs_project = needs_project(command.word);
+  add_options(*verb, *project);
   verb->add_flag("--json", options->json, "One JSON object");
   verb->add_option("WORDS", options->words, std::string(command.arguments));
   verb->group("On a project");
-  verb->callback(
-      [options, word = command.word, &exit_code] { run_verb(*options, word, exit_code); });
+  verb->callback([options, project, word = command.word, &exit_code] {
+    run_verb(*options, *project, word, exit_code);
+  });
 }
 
-void add_do(CLI::App& app, int& exit_code) {
+void add_do(CLI::App& app, const SharedProjectOptions& project, int& exit_code) {
   CLI::App* verb = app.add_subcommand("do", "Runs one command of the prompt");
   const auto options = std::make_shared<VerbOptions>();
-  add_options(*verb, *options);
-  verb->get_option("--project")->required();
+  add_options(*verb, *project);
   verb->add_flag("--json", options->json, "One JSON object");
   verb->add_option("WORDS", options->words, "The command, as at the prompt")->required();
   verb->group("On a project");
-  verb->callback([options, &exit_code] { run_verb(*options, {}, exit_code); });
+  verb->callback([options, project, &exit_code] { run_verb(*options, *project, {}, exit_code); });
 }
 
 }  // namespace
 
 void add_project_commands(CLI::App& app, int& exit_code) {
-  add_run(app, exit_code);
-  add_do(app, exit_code);
-  for (const Command& command : commands()) {
-    if (command.is_verb) add_verb(app, command, exit_code);
-  }
   const auto options = std::make_shared<ProjectOptions>();
+  add_run(app, options, exit_code);
+  add_do(app, options, exit_code);
+  for (const Command& command : commands()) {
+    if (command.is_verb) add_verb(app, options, command, exit_code);
+  }
   add_options(app, *options);
   app.final_callback([&app, options, &exit_code] {
     if (!app.get_subcommands().empty()) return;

@@ -125,6 +125,22 @@ TEST_CASE("the verbs do on a project what the script does") {
   CHECK(desk.dowel({"check"}).exit_code == 2);
 }
 
+TEST_CASE("project and catalogue may be named before the word as well as after it") {
+  const Desk desk;
+  testing::write_text(desk.folder / "job.dowel", "place T/plate-5x3 as PLATE\n");
+  const std::vector<std::string> where{"--catalog", "catalog.db", "--project", "f.dowelproj"};
+  std::vector<std::string> arguments = where;
+  arguments.insert(arguments.end(), {"run", "job.dowel"});
+  const auto result = desk.dowel(arguments);
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.find("PLATE: placed") != std::string::npos);
+  const auto listed = desk.dowel({"--project", "f.dowelproj", "bom"});
+  CHECK(listed.exit_code == 0);
+  CHECK(listed.out.find("T/plate-5x3") != std::string::npos);
+  // A verb without a project has nothing to work on.
+  CHECK(desk.dowel({"bom"}).exit_code == 2);
+}
+
 TEST_CASE("bad lines name file, line and column, and what was expected") {
   struct Case {
     const char* line;
