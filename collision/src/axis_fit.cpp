@@ -209,7 +209,10 @@ Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, dou
   }
   result.is_free = overlap.is_free() && shaft.steps.size() * bore.steps.size() > 0;
   result.gap_mm = std::min(least_gap, least_side.gap_mm);
-  result.gap_is_met = result.gap_is_met && least_side.gap_mm <= least_gap;
+  // A shaft that is far too thick may end in the bore's first tenth of a tolerance: then nothing is
+  // known of what faces the wall.
+  result.gap_is_met =
+      result.gap_is_met && least_side.gap_mm <= least_gap && least_side.gap_mm > -tolerance_mm;
   if (std::isfinite(least_side.gap_mm)) {
     result.place_V = bore.origin + least_side.height_mm * axis.axis + least_side.wall;
   }

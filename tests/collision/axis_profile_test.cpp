@@ -74,6 +74,19 @@ TEST_CASE("the air about a bore ends at what stands beside it") {
   CHECK(steps.back()[0] == Approx(20.5));
 }
 
+TEST_CASE("a ring that lies on a mouth, in it by less than the tolerance, meets no wall") {
+  const CollisionModel plate = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 16));
+  AxisProfile ring;
+  ring.steps = {{0.0, 5.0, 20.0, 20.0, true}};
+  const AxisProfile& bore = plate.profiles().bores[0];
+  const double top = bore.direction.z() > 0.0 ? bore.steps.back().to_mm : -bore.steps[0].from_mm;
+  const Pose X_VS = Pose::from_translation({0, 0, bore.origin.z() + top - 0.04});
+  const Fit fitted = fit(ring, bore, X_VS, 0.1, {});
+  CHECK(fitted.is_free);
+  CHECK(fitted.gap_mm < -1.0);
+  CHECK_FALSE(fitted.gap_is_met);
+}
+
 TEST_CASE("a fit is free exactly where the cylinders leave room", "[property]") {
   // The seat, the counterbore and the tilt are analytic: clearance less offset less tilt.
   const CollisionModel plate = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 16));
