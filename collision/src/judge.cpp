@@ -19,7 +19,7 @@ constexpr double kSafety = 1.0e-6;
 }  // namespace
 
 bool Judge::recall() {
-  if (knows_ball()) return true;
+  if (knows_cores() || knows_ball()) return true;
   bool is_free = false;
   if (memory_.shaft != PairMemory::kNone) {
     is_free = take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore);
@@ -38,6 +38,7 @@ PairVerdict Judge::decide() {
   if (!is_free) {
     // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
     // before, others are likely to do so now.
+    if (cores_overlap()) return result_;
     look_for_containment();
     if (is_interference()) return result_;
     if (crossed) look_for_interference();
@@ -80,11 +81,12 @@ bool Judge::are_still_shallow() const {
 
 bool Judge::shaft_fits() {
   if (options_.holes == HoleMode::Paper) return false;
-  if (memory_.shaft != PairMemory::kNone &&
-      take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore)) {
-    return true;
-  }
-  memory_.shaft = PairMemory::kNone;
+  // A pin that stands on a plate is free of each of its holes; the one that it stands over says
+  // how far it is from the plate.
+  bool is_free = memory_.shaft != PairMemory::kNone &&
+                 take_fit(memory_.shaft_is_in_a, memory_.shaft, memory_.bore);
+  if (is_decided_) return true;
+  if (!is_free) memory_.shaft = PairMemory::kNone;
   for (const bool shaft_is_in_a : {true, false}) {
     const CollisionModel& with_shaft = shaft_is_in_a ? pair_.a : pair_.b;
     const CollisionModel& with_bore = shaft_is_in_a ? pair_.b : pair_.a;
@@ -99,12 +101,13 @@ bool Judge::shaft_fits() {
           memory_.shaft_is_in_a = shaft_is_in_a;
           memory_.shaft = s;
           memory_.bore = v;
-          return true;
+          is_free = true;
+          if (is_decided_) return true;
         }
       }
     }
   }
-  return false;
+  return is_free;
 }
 
 bool Judge::may_hold(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <span>
 
 #include "facet_pairs.h"
 #include "narrow_phase.h"
@@ -10,6 +13,33 @@
 // what forbids interference; judge_contact.cpp and judge_interference.cpp look for either.
 
 namespace dowel {
+
+/// The last few places between two faces from which a search failed: the facets of a fan all begin
+/// at the same corner.
+class RefutedStarts {
+ public:
+  bool knows(std::uint32_t face_a, std::uint32_t face_b, const Eigen::Vector3d& start_B) const {
+    const std::span known(entries_.data(), std::min(count_, entries_.size()));
+    return std::ranges::any_of(known, [&](const Entry& entry) {
+      return entry.face_a == face_a && entry.face_b == face_b &&
+             (entry.start_B - start_B).squaredNorm() <= kSame_mm * kSame_mm;
+    });
+  }
+  void add(std::uint32_t face_a, std::uint32_t face_b, const Eigen::Vector3d& start_B) {
+    entries_[count_++ % entries_.size()] = {face_a, face_b, start_B};
+  }
+
+ private:
+  static constexpr double kSame_mm = 1.0e-9;  ///< rounding: the corner is one
+
+  struct Entry {
+    std::uint32_t face_a;
+    std::uint32_t face_b;
+    Eigen::Vector3d start_B;
+  };
+  std::array<Entry, 8> entries_;
+  std::size_t count_ = 0;
+};
 
 /// Collects the evidence on one pair at one pose.
 class Judge {
@@ -101,6 +131,14 @@ class Judge {
 
   bool is_interference() const { return result_.verdict == Verdict::Interference; }
 
+  /// The cores that overlapped still do.
+  bool knows_cores();
+
+  /// Whether cores overlap.
+  bool cores_overlap();
+
+  bool take_overlap(const CoreOverlap& overlap);
+
   /// The ball that the last query found, moved with A, is still deep enough in both, or one close
   /// to it is.
   bool knows_ball();
@@ -142,6 +180,11 @@ class Judge {
   NarrowScratch& scratch_;
   QueryCounters& counters_;
   double erosion_mm_;
+
+  /// From where no touch, and no witness of interference, was found.
+  RefutedStarts no_touch_from_;
+  RefutedStarts no_witness_from_;
+
   bool is_decided_ = false;
   bool is_suspect_ = false;  // facets came within the tolerance and what their faces stand off them
   PairVerdict result_;

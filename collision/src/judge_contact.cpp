@@ -236,6 +236,8 @@ bool Judge::touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j,
   }
   if (is_between_faces(i, j, closest.on_b)) return true;
   const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
+  apart = options_.tolerance_mm;
+  if (no_touch_from_.knows(a.face, b.face, middle)) return false;
   if (const auto place = find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
     touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
     memory_.contact_a = i;
@@ -243,7 +245,7 @@ bool Judge::touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j,
     memory_.has_contact_place = false;
     return true;
   }
-  apart = options_.tolerance_mm;
+  no_touch_from_.add(a.face, b.face, middle);
   return false;
 }
 

@@ -38,11 +38,45 @@ double height_of(const Obb& box, const Pose& X_OP, const PlaneSurface& plane) {
 
 }  // namespace
 
+bool Judge::knows_cores() {
+  if (memory_.core_a == PairMemory::kNone) return false;
+  if (pair_.reliefs_B.empty()) {
+    const auto overlap =
+        overlap_of(pair_.a.cores(), memory_.core_a, pair_.b.cores(), memory_.core_b, pair_.X_BA,
+                   erosion_mm_, pair_.X_BA * memory_.in_cores_A);
+    if (overlap) return take_overlap(*overlap);
+  }
+  memory_.core_a = PairMemory::kNone;
+  return cores_overlap();
+}
+
+bool Judge::cores_overlap() {
+  if (!pair_.reliefs_B.empty() || options_.holes == HoleMode::Paper) return false;
+  const auto overlap = find_overlap(pair_.a.cores(), pair_.b.cores(), pair_.X_BA, erosion_mm_);
+  return overlap && take_overlap(*overlap);
+}
+
+bool Judge::take_overlap(const CoreOverlap& overlap) {
+  memory_.core_a = overlap.core_a;
+  memory_.core_b = overlap.core_b;
+  memory_.in_cores_A = X_AB_ * overlap.point_B;
+  if (options_.measure_depth) {
+    return try_witness(Witness{overlap.point_B, overlap.depth_a_mm, overlap.depth_b_mm});
+  }
+  result_.method = Method::Exact;
+  result_.verdict = Verdict::Interference;
+  result_.depth_mm = 2.0 * std::min(overlap.depth_a_mm, overlap.depth_b_mm);
+  result_.gap_mm = 0.0;
+  result_.witness_W = overlap.point_B;
+  return true;
+}
+
 bool Judge::knows_ball() {
   if (memory_.ball_depth_a_mm <= 0.0) return false;
   const Eigen::Vector3d ball_B = pair_.X_BA * memory_.ball_A;
   double depth_b = memory_.ball_depth_b_mm - (ball_B - memory_.ball_B).norm();
   const bool is_plain = !options_.measure_depth && pair_.reliefs_B.empty();
+  if ((depth_b < erosion_mm_ || !is_plain) && cores_overlap()) return true;
   if (depth_b < erosion_mm_ && is_plain) {
     // The same point of A may be deep in B at another place.
     const NearestPoint near = pair_.b.nearest(ball_B);
@@ -125,8 +159,12 @@ bool Judge::crosses(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j)
     return false;
   }
   const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
-  return closest.distance_squared_mm2 <= margin * margin &&
-         try_start(0.5 * (closest.on_a + closest.on_b), i, j, reach);
+  if (closest.distance_squared_mm2 > margin * margin) return false;
+  const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
+  if (no_witness_from_.knows(a.face, b.face, middle)) return false;
+  if (try_start(middle, i, j, reach)) return true;
+  no_witness_from_.add(a.face, b.face, middle);
+  return false;
 }
 
 double Judge::reach_mm(const ModelTriangle& a, const ModelTriangle& b) const {

@@ -146,6 +146,7 @@ CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
   find_inner_points();
   find_seat_planes();
   profiles_ = find_axis_profiles(*this);
+  cores_ = find_cores(*this);
 }
 
 std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
@@ -359,7 +360,7 @@ std::size_t CollisionModel::memory_bytes() const {
          overhang_begin_.capacity() * sizeof(overhang_begin_[0]) +
          inner_points_.capacity() * sizeof(InnerPoint) +
          seat_planes_.capacity() * sizeof(SeatPlane) + seats_.capacity() * sizeof(Seat) +
-         profiles_.memory_bytes();
+         profiles_.memory_bytes() + cores_.memory_bytes();
 }
 
 }  // namespace dowel

@@ -63,13 +63,20 @@ struct PairMemory {
   std::uint32_t crossing_a = kNone;
   std::uint32_t crossing_b = kNone;
 
+  /// Cores that overlapped, and a point of both in the frame of A.
+  std::uint32_t core_a = kNone;
+  std::uint32_t core_b = kNone;
+  Eigen::Vector3d in_cores_A = Eigen::Vector3d::Zero();
+
   /// A ball in both bodies: its centre and its depth in each; depth 0: none.
   Eigen::Vector3d ball_A = Eigen::Vector3d::Zero();
   Eigen::Vector3d ball_B = Eigen::Vector3d::Zero();
   double ball_depth_a_mm = 0.0;
   double ball_depth_b_mm = 0.0;
 
-  bool is_empty() const { return shaft == kNone && contact_a == kNone && ball_depth_a_mm <= 0.0; }
+  bool is_empty() const {
+    return shaft == kNone && contact_a == kNone && core_a == kNone && ball_depth_a_mm <= 0.0;
+  }
 };
 
 /// The verdict, with witness in the frame of B.

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxMovers = 64;
 
 /// Candidates are found with room for this many moves like the last, up to this share of the
 /// mover's size.
-constexpr double kStepsOfRoom = 16.0;
+constexpr double kStepsOfRoom = 40.0;
 constexpr double kSizesOfRoom = 0.5;
 
 /// Added to each step of a way: rounding of poses 100 m from the origin.
@@ -75,7 +75,7 @@ BodyId CollisionScene::add(std::shared_ptr<const CollisionElement> element, cons
   DOWEL_EXPECTS(element != nullptr);
   BodyId id{static_cast<std::uint32_t>(impl_->bodies.size())};
   if (impl_->free_ids.empty()) {
-    impl_->bodies.emplace_back();
+    impl_->bodies.add_one();
   } else {
     id = impl_->free_ids.back();
     impl_->free_ids.pop_back();
@@ -163,7 +163,11 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   }
   Mover& mover = *known;
   mover.last_use = query_count;
-  const Obb& obb_B = body(id).element->obb();
+  if (mover.listed_until < 0.0) {
+    mover.element = body(id).element.get();
+    mover.radius_mm = mover.element->obb().half_extents_mm.norm();
+  }
+  const Eigen::Vector3d center_W = X_WB * mover.element->obb().center;
   double step_mm = 0.0;
   if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes) {
     mover.tolerance_mm = options.tolerance_mm;
@@ -173,21 +177,22 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   } else if (mover.listed_until >= 0.0) {
     // No point is further from the box's centre than a corner; turned by an angle it moves by twice
     // the sine of half of that.
-    const Eigen::Quaterniond turn = mover.X_WB.rotation().conjugate() * X_WB.rotation();
-    step_mm = (X_WB * obb_B.center - mover.X_WB * obb_B.center).norm() +
-              2.0 * turn.vec().norm() * obb_B.half_extents_mm.norm() + kWayRounding_mm;
+    step_mm = (center_W - mover.center_W).norm() + kWayRounding_mm;
+    if (X_WB.rotation().coeffs() != mover.X_WB.rotation().coeffs()) {
+      const Eigen::Quaterniond turn = mover.X_WB.rotation().conjugate() * X_WB.rotation();
+      step_mm += 2.0 * turn.vec().norm() * mover.radius_mm;
+    }
     mover.way_mm += step_mm;
   }
   mover.X_WB = X_WB;
+  mover.center_W = center_W;
   if (mover.way_mm >= mover.listed_until) find_candidates(mover, step_mm);
   return mover;
 }
 
 void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
-  const Obb& obb_B = body(mover.id).element->obb();
-  const Obb obb_W = transformed(mover.X_WB, obb_B);
-  const double room_mm =
-      std::min(kStepsOfRoom * step_mm, kSizesOfRoom * obb_B.half_extents_mm.norm());
+  const Obb obb_W = mover.obb_W();
+  const double room_mm = std::min(kStepsOfRoom * step_mm, kSizesOfRoom * mover.radius_mm);
   const double margin_mm = mover.tolerance_mm + room_mm;
   const Silhouette outline = silhouette(obb_W);
   projection.query(bounds(obb_W).padded(margin_mm), found);
@@ -242,7 +247,7 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, const Obb&
 
 bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
   if (mover.way_mm < mover.clear_until) return true;
-  const Obb obb_W = transformed(mover.X_WB, body(mover.id).element->obb());
+  const Obb obb_W = mover.obb_W();
   double clear_until = mover.listed_until;
   for (Candidate& candidate : mover.candidates) {
     const Body& other = bodies[candidate.id.value];
@@ -357,8 +362,9 @@ std::size_t CollisionScene::memory_bytes() const {
     bytes += sizeof(mover) + mover.candidates.capacity() * sizeof(Impl::Candidate);
   }
   std::vector<const CollisionElement*> elements;
-  for (const Impl::Body& body : impl_->bodies) {
-    if (body.element != nullptr) elements.push_back(body.element.get());
+  for (std::size_t i = 0; i < impl_->bodies.size(); ++i) {
+    const CollisionElement* element = impl_->bodies[i].element.get();
+    if (element != nullptr) elements.push_back(element);
   }
   std::ranges::sort(elements);
   elements.erase(std::unique(elements.begin(), elements.end()), elements.end());

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <deque>
+#include <array>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,23 @@ struct CollisionScene::Impl {
     Obb obb_W() const { return transformed(X_WB, element->obb()); }
   };
 
+  /// The bodies by id: in blocks, so that it grows without room to spare.
+  class Bodies {
+   public:
+    Body& operator[](std::size_t i) { return (*blocks_[i / kBlock])[i % kBlock]; }
+    const Body& operator[](std::size_t i) const { return (*blocks_[i / kBlock])[i % kBlock]; }
+    std::size_t size() const { return size_; }
+    void add_one() {
+      if (size_ % kBlock == 0) blocks_.push_back(std::make_unique<std::array<Body, kBlock>>());
+      ++size_;
+    }
+
+   private:
+    static constexpr std::size_t kBlock = 32;
+    std::vector<std::unique_ptr<std::array<Body, kBlock>>> blocks_;
+    std::size_t size_ = 0;
+  };
+
   /// A placed body that a mover may meet, and what is known of the two.
   struct Candidate {
     BodyId id;
@@ -35,7 +53,10 @@ struct CollisionScene::Impl {
   /// point of it has moved since the candidates were found.
   struct Mover {
     BodyId id;
+    const CollisionElement* element = nullptr;
+    double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
+    Eigen::Vector3d center_W;  // of its box
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
@@ -43,6 +64,8 @@ struct CollisionScene::Impl {
     HoleMode holes = HoleMode::Exact;
     std::uint64_t last_use = 0;
     std::vector<Candidate> candidates;  // by id
+
+    Obb obb_W() const { return transformed(X_WB, element->obb()); }
   };
 
   class PairSweep;
@@ -105,7 +128,7 @@ struct CollisionScene::Impl {
   /// Reliefs of the pair in the frame of b; valid until the next call.
   std::span<const ThreadRelief> reliefs_in(BodyId a, BodyId b, const Pose& X_BA);
 
-  std::deque<Body> bodies;  // grows without room to spare
+  Bodies bodies;
   std::vector<BodyId> free_ids;
   LayeredProjection projection;
   std::map<std::pair<BodyId, BodyId>, std::vector<ThreadRelief>> reliefs;  // in the first's frame

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dowel/collision/axis_profile.h"
+#include "dowel/collision/core.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/faceted_solid.h"
 
@@ -128,6 +129,9 @@ class CollisionModel {
   };
   std::span<const InnerPoint> inner_points() const noexcept { return inner_points_; }
 
+  /// Convex pieces of the material.
+  const Cores& cores() const noexcept { return cores_; }
+
   /// Profiles about the axes of the cylinders.
   const AxisProfiles& profiles() const noexcept { return profiles_; }
 
@@ -165,6 +169,7 @@ class CollisionModel {
   std::vector<SeatPlane> seat_planes_;
   std::vector<Seat> seats_;
   AxisProfiles profiles_;
+  Cores cores_;
   double max_slack_mm_ = 0.0;
   double max_unknown_mm_ = 0.0;
 };
