@@ -6,14 +6,21 @@
 #include "dowel/kernel/tolerance.h"
 
 namespace dowel {
+namespace {
+
+/// A quaternion whose square misses 1 by no more is kept to the bit: a pose survives being written
+/// and read, and a chain of products does not drift. Dividing by a length of 1 - 1e-16 moves the
+/// components in [1/2, 1) by a whole ulp and the others by none: it turns, the same way each time.
+/// Some tens of ulp stay below 4e-10 mm at kMaxCoordinate_mm, and dividing is rare.
+constexpr double kRoundedOff = 4.0e-15;
+
+}  // namespace
 
 Pose::Pose(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation)
     : rotation_(rotation), translation_(translation) {
   DOWEL_EXPECTS(rotation.coeffs().allFinite() && translation.allFinite());
   DOWEL_EXPECTS(std::abs(rotation.norm() - 1.0) <= kUnitQuaternionSlack);
-  // One part in 1e15 is rounding: such a quaternion is kept to the bit, so that a pose survives
-  // being written and read.
-  if (std::abs(rotation.squaredNorm() - 1.0) > 4e-16) rotation_.normalize();
+  if (std::abs(rotation.squaredNorm() - 1.0) > kRoundedOff) rotation_.normalize();
 }
 
 Pose Pose::from_translation(const Eigen::Vector3d& translation) {
@@ -46,7 +53,7 @@ Pose Pose::canonical() const {
 }
 
 Pose Pose::operator*(const Pose& other) const {
-  return {(rotation_ * other.rotation_).normalized(), *this * other.translation_};
+  return {rotation_ * other.rotation_, *this * other.translation_};
 }
 
 Pose interpolate(const Pose& from, const Pose& to, double s) {
