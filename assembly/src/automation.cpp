@@ -95,6 +95,7 @@ std::pair<double, double> counterbore(const Feature& hole) {
 struct Bore {
   std::vector<BoreStretch> stretches;
   std::vector<FeatureName> holes;
+  double reached_mm = 0.0;  ///< depth at which the last part ends
 };
 
 /// A stretch of any hole on the axis; cones only tell that parts follow each other.
@@ -134,16 +135,125 @@ Bore bore_along(Session& session, const Eigen::Vector3d& start_W,
     reached_mm = std::max(reached_mm, stretch.bore.to_mm);
     if (!stretch.is_cone) bore.stretches.push_back(stretch.bore);
   }
+  bore.reached_mm = reached_mm;
   return bore;
 }
 
 std::vector<Fastener> fasteners_for(Session& session, const std::string& instance) {
   std::vector<Fastener> fasteners;
   for (const std::string& name :
-       elements_for(session, {"SCREW", "WASHER", "NUT"}, family_of(session, instance))) {
+       elements_for(session, {"SCREW", "WASHER", "NUT", "TEE"}, family_of(session, instance))) {
     if (const auto fastener = fastener_of(session.element(name))) fasteners.push_back(*fastener);
   }
   return fasteners;
+}
+
+}  // namespace
+
+namespace {
+
+/// A T-slot below a bore.
+struct SlotBelow {
+  FeatureName name;
+  PlacedFeature slot;
+  double mouth_mm = 0.0;  ///< its depth along the bore
+};
+
+/// The slot whose mouth the axis meets where the last part ends, in its middle.
+std::optional<SlotBelow> slot_below(Session& session, const Eigen::Vector3d& start_W,
+                                    const Eigen::Vector3d& direction_W, double reached_mm) {
+  for (const Instance* instance : session.state().in_order()) {
+    for (const Feature& slot : session.element(instance->element).features) {
+      if (slot.kind != FeatureKind::Slot || !slot.slot || slot.slot->type != SlotShape::Type::Tee) {
+        continue;
+      }
+      const PlacedFeature placed{&slot, instance->X_WI};
+      if ((placed.direction_W() - direction_W).norm() > kCoaxial_rad) continue;
+      const Eigen::Vector3d off_W = placed.origin_W() - start_W;
+      const double mouth_mm = off_W.dot(direction_W);
+      const Eigen::Vector3d run_W = instance->X_WI.rotation() * slot.slot->run;
+      const Eigen::Vector3d beside_W = off_W - mouth_mm * direction_W;
+      const double along_mm = run_W.dot(beside_W);
+      if (std::abs(mouth_mm - reached_mm) > kOpenJoint_mm ||
+          (beside_W - along_mm * run_W).norm() > kCoaxial_mm ||
+          std::abs(along_mm) > 0.5 * slot.slot->length_mm) {
+        continue;
+      }
+      return SlotBelow{{instance->name, slot.name}, placed, mouth_mm};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Ways with each T-nut that fits the slot; their thread is the hole behind the last of the bore.
+FasteningChoices choose_in_slot(const Bore& bore, const SlotBelow& below,
+                                std::span<const Fastener> fasteners,
+                                const FasteningOptions& options) {
+  const SlotShape& shape = *below.slot.feature->slot;
+  FasteningChoices all;
+  for (const Fastener& nut : fasteners) {
+    // Without a neck nothing keeps it from turning in the slot.
+    const bool has_neck = nut.foot_height_mm < nut.length_mm - kCoincident_mm;
+    if (nut.kind != Fastener::Kind::TeeNut || !has_neck ||
+        nut.foot_width_mm > shape.undercut_width_mm ||
+        nut.foot_height_mm > shape.undercut_height_mm ||
+        nut.length_mm - nut.foot_height_mm > shape.throat_depth_mm) {
+      continue;
+    }
+    const double shoulder_mm = below.mouth_mm + shape.throat_depth_mm;
+    std::vector<BoreStretch> stretches = bore.stretches;
+    stretches.push_back({shoulder_mm - (nut.length_mm - nut.foot_height_mm),
+                         shoulder_mm + nut.foot_height_mm, nut.core_diameter_mm,
+                         bore.holes.size()});
+    std::vector<Fastener> fitting(fasteners.begin(), fasteners.end());
+    std::erase_if(fitting, [&](const Fastener& other) {
+      return other.kind == Fastener::Kind::Screw && other.nominal_mm != nut.nominal_mm;
+    });
+    FasteningChoices choices = choose_fastening(stretches, fitting, options);
+    for (Fastening& way : choices.ways) {
+      if (way.nut || way.thread != bore.holes.size()) continue;
+      way.tee_nut = nut;
+      all.ways.push_back(std::move(way));
+    }
+    if (!choices.reason.empty()) {
+      all.reason += (all.reason.empty() ? "" : "; ") + nut.element + ": " + choices.reason;
+    }
+  }
+  // The thickest screw first: it is what the slot was made for.
+  std::ranges::stable_sort(all.ways, [](const Fastening& a, const Fastening& b) {
+    if (a.screw.nominal_mm != b.screw.nominal_mm) return a.screw.nominal_mm > b.screw.nominal_mm;
+    return a.screw.length_mm < b.screw.length_mm;
+  });
+  if (all.ways.empty() && all.reason.empty()) all.reason = "no T-nut fits the slot";
+  return all;
+}
+
+/// A T-nut in its slot, its hole on the screw's axis and its foot drawn up under the throat.
+Placement placed_tee_nut(Session& session, const Fastener& nut, const std::string& name,
+                         const FeatureName& slot_name, const Eigen::Vector3d& axis_W) {
+  const PlacedFeature slot = session.feature(slot_name);
+  const Element& element = session.element(nut.element);
+  MateFeatures key;
+  key.kind = MateKind::KeyInSlot;
+  key.moving_element = &element;
+  key.moving = element.find_feature(nut.feature);
+  key.fixed = slot.feature;
+  const Joint joint = mate_joints(key, Pose()).front();
+  // Turned as the key asks, then its hole to where the screw is.
+  const Pose X_WN = place_by_joint(joint, slot.X_WI, slot.X_WI);
+  const Eigen::Vector3d into_W = slot.direction_W();
+  const Eigen::Vector3d off_W = axis_W - X_WN * key.moving->origin;
+  const double top_mm = into_W.dot(slot.origin_W() - X_WN * key.moving->origin) +
+                        slot.feature->slot->throat_depth_mm - (nut.length_mm - nut.foot_height_mm);
+  const Eigen::Vector3d along_W = off_W - into_W.dot(off_W) * into_W;
+  Mate mate;
+  mate.kind = MateKind::KeyInSlot;
+  mate.moving = {name, nut.feature};
+  mate.fixed = slot_name;
+  return {nut.element,
+          name,
+          Pose(X_WN.rotation(), X_WN.translation() + along_W + top_mm * into_W),
+          {mate}};
 }
 
 }  // namespace
@@ -210,7 +320,11 @@ FasteningPlan plan_fastening(Session& session, const FeatureName& hole) {
     Bore bore = bore_along(session, at.origin_W() + plan.seat_mm * direction_W, direction_W);
     FasteningOptions options;
     options.needs_washer = !in_counterbore;
-    FasteningChoices choices = choose_fastening(bore.stretches, fitting, options);
+    const auto below = slot_below(session, at.origin_W() + plan.seat_mm * direction_W, direction_W,
+                                  bore.reached_mm);
+    FasteningChoices choices = below ? choose_in_slot(bore, *below, fitting, options)
+                                     : choose_fastening(bore.stretches, fitting, options);
+    if (below) bore.holes.push_back(below->name);
     if (choices.ways.size() > kMostWays) choices.ways.resize(kMostWays);
     plan.holes = std::move(bore.holes);
     plan.ways = std::move(choices.ways);
@@ -228,6 +342,7 @@ std::vector<MoveReport> fasten(Session& session, const FasteningPlan& plan, std:
   std::vector<std::string> elements{chosen.screw.element};
   if (chosen.washer) elements.push_back(chosen.washer->element);
   if (chosen.nut) elements.push_back(chosen.nut->element);
+  if (chosen.tee_nut) elements.push_back(chosen.tee_nut->element);
   const std::vector<std::string> names = new_names(session, elements);
   const PlacedFeature hole = session.feature(plan.hole);
   std::vector<Placement> placements;
@@ -239,6 +354,12 @@ std::vector<MoveReport> fasten(Session& session, const FasteningPlan& plan, std:
   }
   placements.push_back(placed_by_mate(session, elements[0], names[0], chosen.screw.feature,
                                       plan.hole, hole, lift_mm));
+  if (chosen.tee_nut) {
+    // First, as it is brought in: it slides along its slot.
+    placements.insert(placements.begin(),
+                      placed_tee_nut(session, *chosen.tee_nut, names.back(),
+                                     plan.holes.at(chosen.thread), hole.origin_W()));
+  }
   placements.back().mates.front().thread = !chosen.nut && plan.holes.at(chosen.thread) == plan.hole;
   if (chosen.nut) {
     const PlacedFeature shaft{session.element(elements[0]).find_feature(chosen.screw.feature),

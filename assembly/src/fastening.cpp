@@ -91,6 +91,7 @@ std::optional<Fastener> ring_of(const Element& element, Fastener::Kind kind) {
     const MetricThread* thread = thread_of_core_hole(hole->diameter_mm);
     if (thread == nullptr) return std::nullopt;
     ring.nominal_mm = thread->nominal_mm;
+    ring.core_diameter_mm = hole->diameter_mm;
     return ring;
   }
   for (const MetricThread& thread : metric_threads()) {
@@ -99,6 +100,24 @@ std::optional<Fastener> ring_of(const Element& element, Fastener::Kind kind) {
   }
   if (ring.nominal_mm == 0.0) return std::nullopt;
   return ring;
+}
+
+/// A nut with a foot under a neck. A T-bolt has no hole.
+std::optional<Fastener> tee_nut_of(const Element& element) {
+  auto nut = ring_of(element, Fastener::Kind::Nut);
+  if (!nut) return std::nullopt;
+  nut->kind = Fastener::Kind::TeeNut;
+  const Feature& hole = *element.find_feature(nut->feature);
+  double shoulder_mm = 0.0;  // from the top to the lowest face that looks up
+  for (const Feature& face : element.features) {
+    if (face.kind != FeatureKind::Face || face.direction.dot(hole.direction) > kCoaxial_rad - 1.0) {
+      continue;
+    }
+    shoulder_mm = std::max(shoulder_mm, hole.direction.dot(face.origin - hole.origin));
+  }
+  nut->foot_height_mm = nut->length_mm - shoulder_mm;
+  nut->foot_width_mm = width_across(element, hole.direction);
+  return nut;
 }
 
 /// The thread of a bore for one nominal diameter: the first core hole (`surely` one, or what could
@@ -196,6 +215,7 @@ std::optional<Fastener> fastener_of(const Element& element) {
   if (role == "SCREW") return screw_of(element);
   if (role == "WASHER") return ring_of(element, Fastener::Kind::Washer);
   if (role == "NUT") return ring_of(element, Fastener::Kind::Nut);
+  if (role == "TEE") return tee_nut_of(element);
   return std::nullopt;
 }
 

@@ -60,58 +60,90 @@ void PlacedBodies::forget(const std::string& element) {
       bodies_, [&](const auto& entry) { return entry.second.element == element; });
   DOWEL_EXPECTS(!used);
   shapes_.erase(element);
+  const auto kind = kinds_.find(element);
+  if (kind == kinds_.end()) return;
   std::erase_if(may_thread_, [&](const auto& entry) {
-    return entry.first.first == element || entry.first.second == element;
+    return entry.first.first == kind->second || entry.first.second == kind->second;
   });
 }
 
+void PlacedBodies::add(const Instance& instance) {
+  const BodyId id = scene_.add(shape(instance.element), instance.X_WI);
+  const std::size_t kind = kinds_.try_emplace(instance.element, kinds_.size()).first->second;
+  bodies_.emplace(instance.name,
+                  Body{id, instance.number, instance.element, kind, instance.X_WI});
+  names_.emplace(id, instance.name);
+}
+
 void PlacedBodies::follow(const ProjectState& state) {
-  for (auto entry = bodies_.begin(); entry != bodies_.end();) {
-    const Instance* instance = state.find(entry->first);
-    // A name can come back as another element.
-    if (instance != nullptr && instance->element == entry->second.element) {
-      ++entry;
-      continue;
-    }
-    const BodyId id = entry->second.id;
+  // Both are sorted by name: most commands leave nearly all as it was, and going through them side
+  // by side costs no search.
+  std::vector<const Instance*> added;
+  std::vector<const Instance*> moved;
+  auto body = bodies_.begin();
+  const auto drop = [&] {
+    const BodyId id = body->second.id;
     scene_.remove(id);
     names_.erase(id);
     std::erase_if(relieved_, [&](const auto& pair) {
       return pair.first.first == id || pair.first.second == id;
     });
-    entry = bodies_.erase(entry);
-  }
-  for (const Instance* instance : state.in_order()) {
-    const auto found = bodies_.find(instance->name);
-    if (found == bodies_.end()) {
-      const BodyId id = scene_.add(shape(instance->element), instance->X_WI);
-      bodies_.emplace(instance->name,
-                      Body{id, instance->number, instance->element, instance->X_WI});
-      names_.emplace(id, instance->name);
-      relieve(instance->name, {instance->X_WI});
-    } else {
-      Body& body = found->second;
-      body.number = instance->number;
-      if (body.X_WI == instance->X_WI) continue;
-      scene_.move(body.id, instance->X_WI);
-      body.X_WI = instance->X_WI;
-      relieve(instance->name, {instance->X_WI});
+    body = bodies_.erase(body);
+  };
+  for (const auto& [name, instance] : state.instances) {
+    while (body != bodies_.end() && body->first < name) drop();
+    const bool is_there = body != bodies_.end() && body->first == name;
+    // A name can come back as another element.
+    if (is_there && body->second.element != instance.element) drop();
+    if (body == bodies_.end() || body->first != name) {
+      added.push_back(&instance);
+      continue;
     }
+    body->second.number = instance.number;
+    if (!(body->second.X_WI == instance.X_WI)) moved.push_back(&instance);
+    ++body;
   }
+  while (body != bodies_.end()) drop();
+  std::vector<const Instance*> changed = added;
+  changed.insert(changed.end(), moved.begin(), moved.end());
+  std::ranges::sort(added, {}, &Instance::number);
+  for (const Instance* instance : added) add(*instance);
+  for (const Instance* instance : moved) {
+    Body& there = bodies_.at(instance->name);
+    scene_.move(there.id, instance->X_WI);
+    there.X_WI = instance->X_WI;
+  }
+  std::ranges::sort(changed, {}, &Instance::number);
+  for (const Instance* instance : changed) relieve(instance->name, {instance->X_WI});
 }
 
-bool PlacedBodies::may_thread(const std::string& tapped, const std::string& screw) {
-  const auto [entry, is_new] = may_thread_.try_emplace({tapped, screw}, false);
-  if (is_new) entry->second = may_form_thread(find_element_(tapped), find_element_(screw));
+bool PlacedBodies::may_thread(const Body& tapped, const Body& screw) {
+  const auto [entry, is_new] = may_thread_.try_emplace({tapped.kind, screw.kind}, false);
+  if (is_new) {
+    entry->second = may_form_thread(find_element_(tapped.element), find_element_(screw.element));
+  }
   return entry->second;
 }
 
+namespace {
+
+/// How bodies of one kind go with those of another: asked once for each kind.
+struct Threading {
+  bool is_known = false;
+  bool taps = false;
+  bool screws = false;
+};
+
+}  // namespace
+
 void PlacedBodies::relieve(const std::string& name, const std::vector<Pose>& poses) {
   const Body& body = bodies_.at(name);
+  std::vector<Threading> threadings(kinds_.size());
   for (const auto& [other_name, other] : bodies_) {
     if (other.id == body.id) continue;
-    const bool taps = may_thread(body.element, other.element);
-    const bool screws = may_thread(other.element, body.element);
+    Threading& with = threadings[other.kind];
+    if (!with.is_known) with = {true, may_thread(body, other), may_thread(other, body)};
+    const auto [is_known, taps, screws] = with;
     if (!taps && !screws) continue;
     const Element& mine = find_element_(body.element);
     const Element& theirs = find_element_(other.element);
@@ -153,35 +185,42 @@ std::vector<Touch> PlacedBodies::named(std::span<const BodyVerdict> verdicts) co
   return touches;
 }
 
-std::vector<Touch> PlacedBodies::check(const std::string& moving, const Pose& X_WI,
-                                       double tolerance_mm) {
-  const Body& body = bodies_.at(moving);
-  relieve(moving, {X_WI});
-  std::vector<Touch> touches =
-      named(scene_.check(std::array{body.id}, std::array{X_WI}, {.tolerance_mm = tolerance_mm}));
-  relieve(moving, {body.X_WI});
+std::vector<Touch> PlacedBodies::check(const std::vector<Part>& moving, double tolerance_mm) {
+  std::vector<BodyId> ids;
+  std::vector<Pose> poses;
+  for (const Part& part : moving) {
+    ids.push_back(bodies_.at(part.name).id);
+    poses.push_back(part.pose);
+    relieve(part.name, {part.pose});
+  }
+  std::vector<Touch> touches = named(scene_.check(ids, poses, {.tolerance_mm = tolerance_mm}));
+  for (const Part& part : moving) relieve(part.name, {bodies_.at(part.name).X_WI});
   return touches;
 }
 
-PlacedBodies::Path PlacedBodies::sweep(const std::string& moving, const std::vector<Pose>& X_WU,
-                                       double tolerance_mm) {
+PlacedBodies::Path PlacedBodies::sweep(const std::vector<Part>& moving,
+                                       const std::vector<Pose>& X_WU, double tolerance_mm) {
   DOWEL_EXPECTS(X_WU.size() >= 2);
-  const Body& body = bodies_.at(moving);
-  const Pose X_UB = X_WU.front().inverse() * body.X_WI;
-  relieve(moving, {body.X_WI, X_WU.back() * X_UB});
+  std::vector<BodyId> ids;
+  std::vector<Pose> X_UB;
+  for (const Part& part : moving) {
+    ids.push_back(bodies_.at(part.name).id);
+    X_UB.push_back(part.pose);
+    relieve(part.name, {X_WU.front() * part.pose, X_WU.back() * part.pose});
+  }
   Path path;
-  path.X_WI_free = X_WU.back() * X_UB;
+  path.X_WU_free = X_WU.back();
   const auto legs = static_cast<double>(X_WU.size() - 1);
   for (std::size_t leg = 0; leg + 1 < X_WU.size(); ++leg) {
-    const SweepResult result = scene_.sweep(std::array{body.id}, std::array{X_UB}, X_WU[leg],
-                                            X_WU[leg + 1], {.tolerance_mm = tolerance_mm});
+    const SweepResult result =
+        scene_.sweep(ids, X_UB, X_WU[leg], X_WU[leg + 1], {.tolerance_mm = tolerance_mm});
     if (result.verdict != Verdict::Interference) continue;
     path.free_share = (static_cast<double>(leg) + result.time_of_impact) / legs;
-    path.X_WI_free = result.free_pose * X_UB;
+    path.X_WU_free = result.free_pose;
     path.touches = named(result.pairs);
     break;
   }
-  relieve(moving, {body.X_WI});
+  for (const Part& part : moving) relieve(part.name, {bodies_.at(part.name).X_WI});
   return path;
 }
 

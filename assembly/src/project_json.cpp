@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -170,6 +171,11 @@ Json to_json(const Feature& feature) {
             {"area_mm2", feature.area_mm2},
             {"faces", feature.faces}};
   if (feature.slot) json["slot"] = to_json(*feature.slot);
+  // What nobody states is left out, as it was in files written before it was kept.
+  if (!feature.use.empty()) json["use"] = feature.use;
+  if (!feature.thread.empty()) json["thread"] = feature.thread;
+  if (feature.thread_is_guess) json["thread_is_guess"] = true;
+  if (!feature.fit.empty()) json["fit"] = feature.fit;
   return json;
 }
 
@@ -189,6 +195,10 @@ Feature feature_from(const Json& json) {
   if (json.contains("slot")) feature.slot = slot_from(json.at("slot"));
   feature.area_mm2 = json.at("area_mm2").get<double>();
   feature.faces = json.at("faces").get<std::vector<std::uint32_t>>();
+  feature.use = json.value("use", std::string());
+  feature.thread = json.value("thread", std::string());
+  feature.thread_is_guess = json.value("thread_is_guess", false);
+  feature.fit = json.value("fit", std::string());
   return feature;
 }
 
@@ -208,6 +218,30 @@ Json to_json(const Obb& obb) {
   return {{"center", to_json(obb.center)},
           {"axes", std::move(axes)},
           {"half_extents_mm", to_json(obb.half_extents_mm)}};
+}
+
+Json to_json(const BoltCircle& circle) {
+  return {{"center", to_json(circle.center)},
+          {"direction", to_json(circle.direction)},
+          {"diameter_mm", circle.diameter_mm},
+          {"hole_diameter_mm", circle.hole_diameter_mm},
+          {"holes", circle.holes}};
+}
+
+BoltCircle bolt_circle_from(const Json& json) {
+  return {.center = vector_from(json.at("center")),
+          .direction = vector_from(json.at("direction")),
+          .diameter_mm = json.at("diameter_mm").get<double>(),
+          .hole_diameter_mm = json.at("hole_diameter_mm").get<double>(),
+          .holes = json.at("holes").get<std::vector<std::string>>()};
+}
+
+/// What the maker of an element says of it, by key. `element` may be const.
+template <class AnElement>
+auto texts_of(AnElement& element) {
+  return std::array{
+      std::pair("role", &element.role), std::pair("description", &element.description),
+      std::pair("material", &element.material), std::pair("dimensions_by", &element.dimensions_by)};
 }
 
 Element element_from(const Json& json) {
@@ -233,6 +267,13 @@ Element element_from(const Json& json) {
     element.colour = json.at("colour").get<std::array<double, 3>>();
   }
   for (const Json& feature : json.at("features")) element.features.push_back(feature_from(feature));
+  for (const auto& [key, text] : texts_of(element)) *text = json.value(key, std::string());
+  element.density_kg_per_m3 = json.value("density_kg_per_m3", 0.0);
+  if (json.contains("bolt_circles")) {
+    for (const Json& circle : json.at("bolt_circles")) {
+      element.bolt_circles.push_back(bolt_circle_from(circle));
+    }
+  }
   return element;
 }
 
@@ -310,6 +351,14 @@ std::string to_text(const Element& element) {
             {"colour", nullptr},
             {"features", std::move(features)}};
   if (element.colour) json["colour"] = *element.colour;
+  // What nobody states is left out, as above.
+  for (const auto& [key, text] : texts_of(element)) {
+    if (!text->empty()) json[key] = *text;
+  }
+  if (element.density_kg_per_m3 != 0.0) json["density_kg_per_m3"] = element.density_kg_per_m3;
+  for (const BoltCircle& circle : element.bolt_circles) {
+    json["bolt_circles"].push_back(to_json(circle));
+  }
   return dump(json);
 }
 

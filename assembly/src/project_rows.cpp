@@ -15,17 +15,26 @@ namespace {
 constexpr const char* kModeSetting = "mode";
 constexpr const char* kToleranceSetting = "tolerance_mm";
 
-/// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`.
+/// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`. Side by side,
+/// for both are sorted and mostly the same.
 template <class Map, class Row>
 void add_difference(const Map& from, const Map& to, std::vector<Row>& before,
                     std::vector<Row>& after) {
-  for (const auto& [key, row] : from) {
-    const auto found = to.find(key);
-    if (found == to.end() || !(found->second == row)) before.push_back(row);
-  }
-  for (const auto& [key, row] : to) {
-    const auto found = from.find(key);
-    if (found == from.end() || !(found->second == row)) after.push_back(row);
+  auto a = from.begin();
+  auto b = to.begin();
+  while (a != from.end() || b != to.end()) {
+    if (b == to.end() || (a != from.end() && a->first < b->first)) {
+      before.push_back((a++)->second);
+    } else if (a == from.end() || b->first < a->first) {
+      after.push_back((b++)->second);
+    } else {
+      if (!(a->second == b->second)) {
+        before.push_back(a->second);
+        after.push_back(b->second);
+      }
+      ++a;
+      ++b;
+    }
   }
 }
 

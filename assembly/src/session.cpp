@@ -1,8 +1,6 @@
 #include "dowel/assembly/session.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
@@ -11,17 +9,11 @@
 #include "dowel/assembly/thread.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
+#include "mate_graph.h"
 #include "project_rows.h"
 #include "session_impl.h"
 
 namespace dowel {
-namespace {
-
-/// A turn is swept in legs of at most this angle, each well under the half turn at which the
-/// shortest rotation changes its sense.
-constexpr double kLargestLeg_rad = std::numbers::pi / 2.0;
-
-}  // namespace
 
 Session::Session(Project project) : impl_(std::make_unique<Impl>(std::move(project))) {}
 Session::~Session() = default;
@@ -147,35 +139,13 @@ MoveReport Session::insert(const InsertRequest& request, std::string_view comman
   report.X_WI = placement.X_WA;
   report.X_WI_free = placement.X_WA;
   report.made = mate;
-  if (state().mode != CheckMode::Off) report.touches = impl_->check(before.name, placement.X_WA);
+  if (state().mode != CheckMode::Off) {
+    impl_->bodies.follow(state());
+    const auto unit = impl_->parts(unit_of(state(), before.name), before.name, before.X_WI);
+    report.touches = impl_->check_parts(unit, placement.X_WA, state().tolerance_mm);
+  }
   if (worst(report.touches) == Verdict::Interference) report.free_share = 0.0;
   return impl_->finish(std::move(report), before, std::move(next), command);
-}
-
-MoveReport Session::move(std::string_view name, const Eigen::Vector3d& to_W,
-                         std::string_view command) {
-  DOWEL_EXPECTS(to_W.allFinite());
-  const Pose from = impl_->movable(name).X_WI;
-  const Pose to(from.rotation(), to_W);
-  return impl_->travel(name, {from, to}, to, command);
-}
-
-MoveReport Session::rotate(std::string_view name, const Eigen::Vector3d& point_W,
-                           const Eigen::Vector3d& axis_W, double angle_rad,
-                           std::string_view command) {
-  DOWEL_EXPECTS(std::abs(angle_rad) <= 2.0 * std::numbers::pi + kParallel_rad);
-  const Pose from = impl_->movable(name).X_WI;
-  const int legs = std::max(1, static_cast<int>(std::ceil(std::abs(angle_rad) / kLargestLeg_rad)));
-  // A frame on the axis only turns, so that its straight path makes the part's path the arc. The
-  // nearer it is to the part, the better the bound that a sweep has for the way of its points.
-  const Eigen::Vector3d center_W = from * impl_->element(impl_->instance(name).element).obb.center;
-  const Eigen::Vector3d pivot_W = point_W + axis_W.dot(center_W - point_W) * axis_W;
-  std::vector<Pose> X_WU;
-  for (int leg = 0; leg <= legs; ++leg) {
-    X_WU.emplace_back(Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad * leg / legs, axis_W)),
-                      pivot_W);
-  }
-  return impl_->travel(name, X_WU, Pose::about_axis(point_W, axis_W, angle_rad) * from, command);
 }
 
 std::vector<Mate> Session::remove(std::string_view name, std::string_view command) {

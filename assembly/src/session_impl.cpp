@@ -7,6 +7,7 @@
 #include "dowel/assembly/suggest.h"
 #include "dowel/assembly/thread.h"
 #include "dowel/kernel/check.h"
+#include "mate_graph.h"
 #include "project_rows.h"
 
 namespace dowel {
@@ -49,9 +50,10 @@ const Instance& Session::Impl::instance(std::string_view name) const {
 
 const Instance& Session::Impl::movable(std::string_view name) const {
   const Instance& found = instance(name);
-  if (found.grounded) {
-    refuse(found.name + " is grounded and does not move; use `ground " + found.name +
-           " off` first");
+  for (const std::string& part : unit_of(state(), found.name)) {
+    if (!state().find(part)->grounded) continue;
+    refuse((part == found.name ? part : found.name + " is fixed to " + part + ", which") +
+           " is grounded and does not move; use `ground " + part + " off` first");
   }
   return found;
 }
@@ -62,7 +64,7 @@ const Element& Session::Impl::element(std::string_view name) {
   if (known != candidates.end()) return known->second.element;
   if (catalog != nullptr) {
     if (auto found = catalog->find(name)) {
-      return candidates.emplace(std::string(name), Candidate{std::move(*found), nullptr})
+      return candidates.emplace(std::string(name), Candidate{std::move(*found), nullptr, nullptr})
           .first->second.element;
     }
   }
@@ -159,51 +161,15 @@ std::vector<Mate> Session::Impl::drop_broken(ProjectState& next, const std::stri
 
 std::vector<ProjectElement> Session::Impl::missing_copy(const std::string& name) {
   if (project.find_element(name) != nullptr) return {};
-  return {{element(name), solid(name), catalog->brep(name)}};
+  const Element& copied = element(name);
+  const auto& brep = candidates.at(name).brep;
+  return {{copied, solid(name), brep != nullptr ? *brep : catalog->brep(name)}};
 }
 
 void Session::Impl::commit(std::string_view command, const ProjectState& next,
                            const std::vector<ProjectElement>& copies) {
   project.commit(command, next, copies);
   for (const ProjectElement& copy : copies) candidates.erase(copy.element.name);
-}
-
-MoveReport Session::Impl::finish(MoveReport report, const Instance& before, ProjectState next,
-                                 std::string_view command) {
-  report.instance = before.name;
-  report.checked = state().mode != CheckMode::Off;
-  report.verdict = worst(report.touches);
-  report.refused = state().mode == CheckMode::Block && report.verdict == Verdict::Interference;
-  if (report.refused) {
-    report.X_WI = before.X_WI;
-    report.made.reset();
-    return report;
-  }
-  next.instances.at(before.name).X_WI = settled(report.X_WI);
-  report.dropped = drop_broken(next, before.name);
-  commit(command, next);
-  report.X_WI = instance(report.instance).X_WI;
-  return report;
-}
-
-MoveReport Session::Impl::travel(std::string_view name, const std::vector<Pose>& X_WU,
-                                 const Pose& X_WI, std::string_view command) {
-  const Instance before = movable(name);
-  expect_in_reach(X_WI, before.name);
-  MoveReport report;
-  report.X_WI = X_WI;
-  report.X_WI_free = X_WI;
-  if (state().mode != CheckMode::Off) {
-    // Out of an interference there must be a way: then the end alone counts.
-    if (worst(check(before.name, before.X_WI)) != Verdict::Interference) {
-      const PlacedBodies::Path path = bodies.sweep(before.name, X_WU, state().tolerance_mm);
-      report.free_share = path.free_share;
-      report.X_WI_free = path.X_WI_free;
-      report.touches = path.touches;
-    }
-    if (report.touches.empty()) report.touches = check(before.name, X_WI);
-  }
-  return finish(std::move(report), before, state(), command);
 }
 
 bool Session::Impl::expect_fit(const FeatureName& moving_name, const PlacedFeature& moving,

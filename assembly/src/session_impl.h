@@ -33,11 +33,18 @@ struct NamedProblem {
   std::size_t index(const std::string& name) const;
 };
 
+/// A direction in which a part may leave the others, and what gives it.
+struct WayDirection {
+  Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();  ///< unit
+  std::string along;
+};
+
 struct Session::Impl {
   /// An entry of the catalogue that the project may come to copy.
   struct Candidate {
     Element element;
-    std::shared_ptr<const FacetedSolid> solid;  // on demand
+    std::shared_ptr<const FacetedSolid> solid;           // on demand
+    std::shared_ptr<const std::vector<std::byte>> brep;  // of a unit's; else the catalogue has it
   };
 
   explicit Impl(Project opened);
@@ -46,7 +53,7 @@ struct Session::Impl {
 
   std::vector<std::string> instance_names() const;
   const Instance& instance(std::string_view name) const;
-  /// Throws Error{InvalidInput} where it is grounded.
+  /// Throws Error{InvalidInput} where it, or what is fixed to it, is grounded.
   const Instance& movable(std::string_view name) const;
   const Element& element(std::string_view name);
   std::shared_ptr<const FacetedSolid> solid(std::string_view name);
@@ -95,9 +102,34 @@ struct Session::Impl {
   /// Blocks or makes the move of `before` to `report.X_WI`, as the mode and the report say.
   MoveReport finish(MoveReport report, const Instance& before, ProjectState next,
                     std::string_view command);
-  /// Moves `name` to `X_WI` by way of the frames `X_WU`.
+  /// Moves the unit of `name` by way of the frames `X_WU`, so that the instance ends at `X_WI`.
   MoveReport travel(std::string_view name, const std::vector<Pose>& X_WU, const Pose& X_WI,
                     std::string_view command);
+  /// The parts of a group where they are, seen from U; the one called `first` first.
+  std::vector<PlacedBodies::Part> parts(const std::set<std::string>& group,
+                                        const std::string& first, const Pose& X_WU);
+  /// What the mates leave `group` free to do as one, told for where `name` is.
+  std::vector<Freedom> group_freedoms(const std::set<std::string>& group, const std::string& name);
+  /// Pairs of a group, were U at X_WU.
+  std::vector<Touch> check_parts(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU,
+                                 double tolerance_mm);
+
+  /// The way of a drag, as frames; fills in what the mates leave of it. Throws
+  /// Error{InvalidInput} where they leave nothing.
+  std::vector<Pose> drag_frames(const DragRequest& request, const std::vector<Freedom>& freedoms,
+                                DragReport& report);
+  /// How far a drag gets; fills in what stopped it.
+  Pose drag_end(const std::vector<PlacedBodies::Part>& parts_U, const std::vector<Pose>& X_WU,
+                const std::vector<Freedom>& freedoms, DragMode mode, DragReport& report);
+  /// The state with the parts there. Throws Error{InvalidInput} where a mate would be lost.
+  ProjectState dragged(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU);
+
+  /// Along the mates of a group with others, and up from the base.
+  std::vector<WayDirection> way_directions(const ProjectState& in,
+                                           const std::set<std::string>& group);
+  /// Expects: `bodies` follow `in`.
+  WayOut way_out(const ProjectState& in, const std::set<std::string>& group,
+                 const WayDirection& direction);
 
   /// Says with numbers where a shaft is too thick for its hole; whether the two form a thread.
   static bool expect_fit(const FeatureName& moving_name, const PlacedFeature& moving,

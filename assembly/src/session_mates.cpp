@@ -5,6 +5,7 @@
 
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/tolerance.h"
+#include "mate_graph.h"
 #include "session_impl.h"
 
 namespace dowel {
@@ -12,41 +13,6 @@ namespace {
 
 /// Poses nearer than this are one but for the rounding of the solver.
 constexpr double kSamePose_mm = 1.0e-11;
-
-/// Instances that a mate is on.
-std::set<std::string> parts_of(const Mate& mate) {
-  std::set<std::string> parts{mate.moving.instance, mate.fixed.instance};
-  if (mate.has_seat()) parts.insert(mate.fixed_face.instance);
-  return parts;
-}
-
-/// The instances that hang together with `name`, itself among them: over mates, and up to what is
-/// grounded.
-std::set<std::string> hanging_together(const ProjectState& state, const std::string& name) {
-  std::set<std::string> group{name};
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (const auto& [number, mate] : state.mates) {
-      const std::set<std::string> parts = parts_of(mate);
-      const bool joins = std::ranges::any_of(parts, [&](const std::string& part) {
-        return group.contains(part) && !state.find(part)->grounded;
-      });
-      for (const std::string& part : parts) {
-        if (joins && group.insert(part).second) grows = true;
-      }
-    }
-  }
-  return group;
-}
-
-/// Those of `group` that may move. Where none is grounded, `held` stays.
-std::set<std::string> free_parts(const ProjectState& state, std::set<std::string> group,
-                                 const std::string& held) {
-  const std::size_t all = group.size();
-  std::erase_if(group, [&](const std::string& part) { return state.find(part)->grounded; });
-  if (group.size() == all) group.erase(held);
-  return group;
-}
 
 bool is_same_place(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() <= kSamePose_mm &&

@@ -54,22 +54,23 @@ MoveReport Session::Impl::add(ProjectState& next, const Placement& placement) {
   }
   ++placed.number;
 
-  ProjectState with_it = next;
-  with_it.instances.emplace(placed.name, placed);
+  next.instances.emplace(placed.name, placed);
   MoveReport report;
   report.instance = placed.name;
   report.X_WI = placed.X_WI;
   report.X_WI_free = placed.X_WI;
   report.checked = next.mode != CheckMode::Off;
   if (report.checked) {
-    bodies.follow(with_it);
+    bodies.follow(next);
     report.touches = bodies.check(placed.name, placed.X_WI, next.tolerance_mm);
     report.verdict = worst(report.touches);
     if (report.verdict == Verdict::Interference) report.free_share = 0.0;
     report.refused = next.mode == CheckMode::Block && report.verdict == Verdict::Interference;
   }
-  if (report.refused) return report;
-  next = std::move(with_it);
+  if (report.refused) {
+    next.instances.erase(placed.name);
+    return report;
+  }
   for (Mate mate : placement.mates) {
     mate.moving.instance = placed.name;
     mate.number = next.mates.empty() ? 1 : next.mates.rbegin()->first + 1;
@@ -83,6 +84,7 @@ MoveReport Session::Impl::add(ProjectState& next, const Placement& placement) {
 void Session::Impl::commit_placed(std::string_view command, const ProjectState& next) {
   std::vector<ProjectElement> copies;
   for (const auto& [name, placed] : next.instances) {
+    if (state().find(name) != nullptr) continue;
     const bool is_there =
         project.find_element(placed.element) != nullptr ||
         std::ranges::any_of(copies, [&, &wanted = placed](const ProjectElement& copy) {

@@ -31,15 +31,17 @@ std::vector<MoveReport> stack(Session& session, const StackPlan& plan, std::size
 /// What fastens the parts along a hole.
 struct FasteningPlan {
   FeatureName hole;
-  double seat_mm = 0.0;            ///< depth at which the head, or its washer, sits
-  std::vector<FeatureName> holes;  ///< on the axis, by depth; what `Fastening::thread` counts
-  std::vector<Fastening> ways;     ///< best first; never empty
+  double seat_mm = 0.0;  ///< depth at which the head, or its washer, sits
+  /// On the axis, by depth; what `Fastening::thread` counts. Of a T-nut: the slot that it is in.
+  std::vector<FeatureName> holes;
+  std::vector<Fastening> ways;  ///< best first; never empty
 };
 
-/// Screws, washers and nuts so named, of the family of the part, or of any where it has none. The
-/// head goes into the counterbore of the hole where it has one that is wide enough, else onto its
-/// face, with a washer where there is one. Throws Error{InvalidInput} with the reason and numbers
-/// where nothing fastens.
+/// Screws, washers, nuts and T-nuts so named, of the family of the part, or of any where it has
+/// none. The head goes into the counterbore of the hole where it has one that is wide enough, else
+/// onto its face, with a washer where there is one. Where the bore ends over a T-slot, in its
+/// middle, a T-nut that fits the slot takes the screw, drawn up under the throat. Throws
+/// Error{InvalidInput} with the reason and numbers where nothing fastens.
 FasteningPlan plan_fastening(Session& session, const FeatureName& hole);
 
 /// Places screw, washer and nut of `way` (from 0), mated with the hole and each other; without a

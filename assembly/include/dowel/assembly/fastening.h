@@ -21,7 +21,7 @@ struct BoreStretch {
 
 /// A standard part by what fastening needs of it.
 struct Fastener {
-  enum class Kind { Screw, Washer, Nut };
+  enum class Kind { Screw, Washer, Nut, TeeNut };
   Kind kind = Kind::Screw;
   std::string element;
   double nominal_mm = 0.0;        ///< of its thread; washer: the largest thread that goes through
@@ -29,21 +29,25 @@ struct Fastener {
   double thread_end_mm = 0.0;     ///< screw: from under the head to the last full thread
   double head_diameter_mm = 0.0;  ///< screw, washer: outside
   std::string feature;            ///< screw: its shaft; others: their hole
+  double core_diameter_mm = 0.0;  ///< nut, T-nut: of its hole
+  double foot_height_mm = 0.0;    ///< T-nut: of what is under the slot's throat
+  double foot_width_mm = 0.0;     ///< T-nut
 };
 
-/// The screw, washer or nut that an element is, by its name ("screw-M12x55") and its features;
-/// nothing where it is none.
+/// The screw, washer, nut or T-nut that an element is, by its name ("screw-M12x55", "tee-nut-M12")
+/// and its features; nothing where it is none.
 std::optional<Fastener> fastener_of(const Element& element);
 
 /// A way of fastening.
 struct Fastening {
   Fastener screw;
-  std::optional<Fastener> washer;  ///< under the head, where this has no counterbore
-  std::optional<Fastener> nut;     ///< behind the last part, where none has a thread
-  std::size_t thread = 0;          ///< hole of the stretch that the screw engages; none with a nut
-  double grip_mm = 0.0;            ///< from under the head to where the thread begins
-  double engagement_mm = 0.0;      ///< of full threads
-  double spare_mm = 0.0;           ///< from the tip to the end of the thread; a nut: tip beyond it
+  std::optional<Fastener> washer;   ///< under the head, where this has no counterbore
+  std::optional<Fastener> nut;      ///< behind the last part, where none has a thread
+  std::optional<Fastener> tee_nut;  ///< in the slot below the last part
+  std::size_t thread = 0;           ///< hole of the stretch that the screw engages; none with a nut
+  double grip_mm = 0.0;             ///< from under the head to where the thread begins
+  double engagement_mm = 0.0;       ///< of full threads
+  double spare_mm = 0.0;            ///< from the tip to the end of the thread; a nut: tip beyond it
 };
 
 /// What fastening found, and why not more.

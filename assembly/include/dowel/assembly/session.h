@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -49,11 +51,12 @@ struct MoveReport {
   /// Moves: how much of the way is free of interference, in [0, 1], and the last free pose.
   double free_share = 1.0;
   Pose X_WI_free;
-  std::optional<Mate> made;   ///< insert, mate
-  std::vector<Mate> held_by;  ///< place_at: mates that were made with it
-  std::vector<Mate> dropped;  ///< mates that no longer hold
+  std::optional<Mate> made;              ///< insert, mate
+  std::vector<Mate> held_by;             ///< place_at: mates that were made with it
+  std::vector<Mate> dropped;             ///< mates that no longer hold
+  std::vector<std::string> moved_along;  ///< other instances that moved, too; by order of placing
+  std::vector<Touch> stopped_by;         ///< drag: what is in the rest of the way
   // Of `mate`:
-  std::vector<std::string> moved_along;  ///< other instances that had to move; by order of placing
   bool is_redundant = false;             ///< the mate takes no freedom
   std::optional<MateConflict> conflict;  ///< why it cannot be made; then it is refused
 };
@@ -87,6 +90,46 @@ struct FreedomReport {
     MateVerdict verdict;
   };
   std::vector<MateShare> mates;  ///< of the instance, in the order of making
+};
+
+/// What becomes of a drag that meets something: it ends there; it goes on along what it met; it is
+/// done and reported; nobody looks.
+enum class DragMode : std::uint8_t { Block, Slide, Warn, Off };
+
+/// "block", "slide", "warn", "off".
+std::string_view to_string(DragMode mode);
+
+/// A motion of an instance within what its mates leave free: a slide, or a turn.
+struct DragRequest {
+  std::string instance;
+  Eigen::Vector3d by_mm_W = Eigen::Vector3d::Zero();
+  double turn_rad = 0.0;                   ///< not 0: a turn
+  std::optional<Eigen::Vector3d> axis_W;   ///< of the turn, unit; none: the only one that is free
+  std::optional<Eigen::Vector3d> point_W;  ///< on that axis; none: the instance's origin
+  std::optional<DragMode> mode;            ///< none: by the project's
+};
+
+struct DragReport {
+  MoveReport move;
+  Eigen::Vector3d asked_mm_W = Eigen::Vector3d::Zero();    ///< slide, as asked
+  Eigen::Vector3d allowed_mm_W = Eigen::Vector3d::Zero();  ///< what the mates leave of it
+  bool slid = false;                                       ///< went along what it met
+};
+
+/// A straight way of a part, with what moves with it, from where it is to clear of everything.
+struct WayOut {
+  Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();
+  std::string along;  ///< what gives the direction: a mated feature, or the base
+  double way_mm = 0.0;
+  double free_mm = 0.0;           ///< of the way; all of it where nothing is met
+  std::vector<Touch> blocked_by;  ///< empty: free
+};
+
+/// What counts on a way out.
+struct WayQuery {
+  std::set<std::string> without;   ///< instances that are as if they were not there
+  bool with_sub_assembly = false;  ///< what hangs on the part goes along
+  bool first_free = false;         ///< one free way is enough
 };
 
 struct InsertRequest {
@@ -144,7 +187,8 @@ class Session {
   /// All ways of standing it with its holes on holes, one on `hole`; `X_BE` against its instance.
   std::vector<PatternWay> pattern(std::string_view element_name, const FeatureName& hole);
 
-  // What changes the project. Grounded instances do not move: Error{InvalidInput}.
+  // What changes the project. Grounded instances do not move: Error{InvalidInput}. What is fixed
+  // together (a unit: mates of kind Fix) moves as one.
   MoveReport place(std::string_view element_name, std::string_view name, const Pose& X_WI,
                    std::string_view command);
   /// The same, and mates it with the part of hole or face `at`: what of it goes there as `insert`
@@ -155,12 +199,28 @@ class Session {
   /// come before in the list. Without a command it only tells what would come of it.
   std::vector<MoveReport> place_all(std::span<const Placement> placements,
                                     std::optional<std::string_view> command);
+  /// Places all instances of another project as one: `prefix`-NAME each, fixed together, with their
+  /// mates, at X_WU times their poses there. Refused as a whole. Throws Error{InvalidInput} where
+  /// the project has another element of the same name.
+  std::vector<MoveReport> insert_unit(const Project& unit, std::string_view prefix,
+                                      const Pose& X_WU, std::string_view command);
   /// Checked where it ends. A shaft thicker than the bore is Error{InvalidInput} with the numbers.
   MoveReport insert(const InsertRequest& request, std::string_view command);
   /// Makes a mate beside those that the instance has, and keeps them. The instance moves alone
   /// where that will do; else all that hang together with it, but for grounded ones. A mate that
   /// cannot hold is refused with the reason in `conflict`; one that would interfere, as `insert`.
   MoveReport mate(const MateRequest& request, std::string_view command);
+  /// Makes mates that hold as the parts stand, but for those that earlier ones, or earlier ones in
+  /// the list, make redundant; nothing moves. Numbers do not matter. Returns those that were made.
+  /// Throws Error{InvalidInput} where one does not hold.
+  std::vector<Mate> adopt(std::span<const Mate> mates, std::string_view command);
+  /// Fixes instances to the first of them as they stand, so that they move as one. Returns the
+  /// mates.
+  std::vector<Mate> fix(std::span<const std::string> names, std::string_view command);
+  /// Puts an instance there and makes these mates of it, which hold there. Checked where it ends.
+  /// Throws Error{InvalidInput} where one does not hold, or a shaft is too thick.
+  MoveReport put(std::string_view name, const Pose& X_WI, std::span<const Mate> mates,
+                 std::string_view command);
   /// Takes mates out; nothing moves. Expects: their numbers.
   void unmate(std::span<const std::uint32_t> numbers, std::string_view command);
   /// Its origin goes to `to_W` on a straight line, without turning. Checked on the way and at the
@@ -169,6 +229,11 @@ class Session {
   /// About the line through `point_W` along unit vector `axis_W`. |angle| <= 2 pi.
   MoveReport rotate(std::string_view name, const Eigen::Vector3d& point_W,
                     const Eigen::Vector3d& axis_W, double angle_rad, std::string_view command);
+  /// Moves an instance along what its mates leave free, with its unit and all that hangs on the
+  /// rest of the project by it alone: the allowed motion nearest to the one asked for, swept, to
+  /// the first touch or as the mode says. Mates that hold go on holding. Throws
+  /// Error{InvalidInput} where the mates leave nothing of it.
+  DragReport drag(const DragRequest& request, std::string_view command);
   /// The mates that went with it.
   std::vector<Mate> remove(std::string_view name, std::string_view command);
   void set_grounded(std::string_view name, bool grounded, std::string_view command);
@@ -189,6 +254,16 @@ class Session {
   MateResidual residual(const Mate& mate);
   /// By the mates of all that hang together with it.
   FreedomReport freedoms(std::string_view name);
+  /// The straight ways by which a part, with its unit, can leave the others, or be brought in:
+  /// along its mates' axes and normals, and up from the base. Free ones first, by length; then
+  /// by how far they are free.
+  std::vector<WayOut> ways_out(std::string_view name, const WayQuery& query = {});
+  /// What goes along where an instance is dragged, itself among it; sorted.
+  std::vector<std::string> sub_assembly(std::string_view name) const;
+  /// What is fixed to it, itself among it; sorted.
+  std::vector<std::string> unit(std::string_view name) const;
+  /// Pairs of an instance's unit with the others, were the instance there.
+  std::vector<Touch> check_at(std::string_view name, const Pose& X_WI);
 
  private:
   struct Impl;
