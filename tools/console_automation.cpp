@@ -59,6 +59,7 @@ std::string fastening_text(const Fastening& way, const FasteningPlan& plan) {
     return text + "looks out of the nut by " + length_text(way.spare_mm) + " mm";
   }
   return text + length_text(way.engagement_mm) + " mm (" + in_diameters + " d) in the thread of " +
+         (way.tee_nut ? way.tee_nut->element + " in " : std::string()) +
          plan.holes.at(way.thread).text() + ", " + length_text(way.spare_mm) + " mm before its end";
 }
 
@@ -68,6 +69,7 @@ Json to_json(const Fastening& way, const FasteningPlan& plan) {
             {"engagement_mm", way.engagement_mm},
             {"spare_mm", way.spare_mm}};
   if (way.washer) json["washer"] = way.washer->element;
+  if (way.tee_nut) json["tee_nut"] = way.tee_nut->element;
   if (way.nut) {
     json["nut"] = way.nut->element;
   } else {

@@ -13,19 +13,6 @@
 namespace dowel::tools {
 namespace {
 
-/// A line in the world; without a point where the words name a direction alone.
-struct Axis {
-  std::optional<Eigen::Vector3d> point_W;
-  Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();
-};
-
-Axis read_axis(Console& console, Arguments& arguments) {
-  if (const auto direction = take_coordinate_axis(arguments)) return {std::nullopt, *direction};
-  const FeatureName name = read_feature(console, arguments, "x, y, z or a feature");
-  const PlacedFeature feature = console.session().feature(name);
-  return {feature.origin_W(), feature.direction_W().normalized()};
-}
-
 /// The words of `place` behind the element.
 struct Placing {
   std::string name;

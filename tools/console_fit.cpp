@@ -1,13 +1,19 @@
 #include "console_fit.h"
 
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "console_text.h"
 #include "dowel/assembly/thread.h"
+#include "dowel/kernel/tolerance.h"
 #include "table.h"
 
 namespace dowel::tools {
 namespace {
+
+/// Diameters of one nominal size differ by no more than this: fits to 80 mm deviate by less.
+constexpr double kOneSize_mm = 0.15;
 
 /// The cylinder of the bore that the shaft goes with: one that it is drawn to fit, else the
 /// narrowest that it goes into, else the narrowest of all.
@@ -22,6 +28,29 @@ double bore_of(const Feature& shaft, const Feature& hole) {
     }
   }
   return bore_mm > 0.0 ? bore_mm : hole.diameter_mm;
+}
+
+struct ToldFit {
+  Fit fit;
+  bool is_stated = false;  ///< both classes, by the catalogue
+};
+
+/// By the classes that the catalogue states of shaft and hole; what it does not state, as drawn.
+std::optional<ToldFit> told_fit(const Feature& shaft, const Feature& hole, double bore_mm) {
+  const double nominal_mm = 0.5 * std::round(2.0 * bore_mm);
+  const auto hole_class = tolerance_class_from(hole.fit);
+  const auto shaft_class = tolerance_class_from(shaft.fit);
+  // A class of a diameter holds for what is drawn with about that diameter.
+  const bool is_sized = is_nominal_size(nominal_mm) &&
+                        std::abs(bore_mm - nominal_mm) <= kCoincident_mm &&
+                        std::abs(shaft.diameter_mm - nominal_mm) <= kOneSize_mm;
+  if (is_sized && hole_class && shaft_class) {
+    return ToldFit{{nominal_mm, *hole_class, *shaft_class}, true};
+  }
+  auto drawn = fit_as_drawn(bore_mm, shaft.diameter_mm);
+  if (!drawn) return std::nullopt;
+  if (hole_class) drawn->hole = *hole_class;
+  return ToldFit{*drawn, false};
 }
 
 std::string thread_text(double nominal_mm) {
@@ -49,8 +78,8 @@ std::string drawn_fit_text(const Feature& shaft, const Feature& hole) {
            thread_text(shaft.diameter_mm);
   }
   const double bore_mm = bore_of(shaft, hole);
-  if (const auto fit = fit_as_drawn(bore_mm, shaft.diameter_mm)) {
-    return fit_text(*fit) + " (as drawn)";
+  if (const auto told = told_fit(shaft, hole, bore_mm)) {
+    return fit_text(told->fit) + (told->is_stated ? " (as stated)" : " (as drawn)");
   }
   std::string text =
       "shaft " + length_text(shaft.diameter_mm) + " mm in hole " + length_text(bore_mm) + " mm: ";
@@ -69,8 +98,9 @@ Json drawn_fit_json(const Feature& shaft, const Feature& hole) {
   Json json{{"shaft_mm", shaft.diameter_mm}, {"hole_mm", bore_mm}};
   if (core_hole(hole, shaft.diameter_mm)) {
     json["thread_mm"] = shaft.diameter_mm;
-  } else if (const auto fit = fit_as_drawn(bore_mm, shaft.diameter_mm)) {
-    json.update(to_json(*fit));
+  } else if (const auto told = told_fit(shaft, hole, bore_mm)) {
+    json.update(to_json(told->fit));
+    json["stated"] = told->is_stated;
   }
   return json;
 }

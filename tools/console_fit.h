@@ -13,8 +13,8 @@ namespace dowel::tools {
 std::string fit_text(const Fit& fit);
 Json to_json(const Fit& fit);
 
-/// The same of two diameters as they are drawn: by their classes where they tell them, as a thread,
-/// or by the play between them.
+/// The same of a shaft and a hole: by the classes that the catalogue states, else by those that the
+/// diameters as drawn tell, as a thread, or by the play between them.
 std::string drawn_fit_text(const Feature& shaft, const Feature& hole);
 Json drawn_fit_json(const Feature& shaft, const Feature& hole);
 

@@ -41,6 +41,13 @@ std::optional<Eigen::Vector3d> take_coordinate_axis(Arguments& arguments) {
   return std::nullopt;
 }
 
+Axis read_axis(Console& console, Arguments& arguments) {
+  if (const auto direction = take_coordinate_axis(arguments)) return {std::nullopt, *direction};
+  const FeatureName name = read_feature(console, arguments, "x, y, z or a feature");
+  const PlacedFeature feature = console.session().feature(name);
+  return {feature.origin_W(), feature.direction_W().normalized()};
+}
+
 InsertWords read_insert_words(Console& console, Arguments& arguments) {
   InsertWords words;
   bool has_offset = false;

@@ -22,6 +22,15 @@ FeatureName read_feature(Console& console, Arguments& arguments, std::string_vie
 /// x, y or z, where it comes next.
 std::optional<Eigen::Vector3d> take_coordinate_axis(Arguments& arguments);
 
+/// A line in the world; without a point where the words name a direction alone.
+struct Axis {
+  std::optional<Eigen::Vector3d> point_W;
+  Eigen::Vector3d direction_W = Eigen::Vector3d::UnitZ();
+};
+
+/// x, y, z or a feature.
+Axis read_axis(Console& console, Arguments& arguments);
+
 /// The words behind the features of an insert: `seat ... on ...`, `offset`, `rot`, `flip`, each
 /// once.
 struct InsertWords {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "dowel/kernel/tolerance.h"
 #include "table.h"
@@ -87,8 +88,9 @@ std::string touches_text(const std::vector<Touch>& touches) {
   std::string text;
   for (const Verdict verdict : {Verdict::Interference, Verdict::Contact}) {
     std::string names;
+    std::set<std::string> told;  // several parts of a unit can touch one
     for (const Touch& touch : touches) {
-      if (touch.pair.verdict != verdict) continue;
+      if (touch.pair.verdict != verdict || !told.insert(touch.with).second) continue;
       names += (names.empty() ? "" : ", ") + touch.with;
       if (verdict == Verdict::Interference) {
         names += " (depth " + short_number(touch.pair.depth_mm) + " mm or more at " +

@@ -94,7 +94,7 @@ void run_verb(const VerbOptions& options, const ProjectOptions& project, std::st
 
 /// A verb without a project would do its work and lose it.
 bool needs_project(std::string_view word) {
-  return word != "new" && word != "list" && word != "show";
+  return word != "new" && word != "list" && word != "show" && word != "diff";
 }
 
 void add_verb(CLI::App& app, const SharedProjectOptions& project, const Command& command,

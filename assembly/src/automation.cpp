@@ -141,9 +141,12 @@ Bore bore_along(Session& session, const Eigen::Vector3d& start_W,
 
 std::vector<Fastener> fasteners_for(Session& session, const std::string& instance) {
   std::vector<Fastener> fasteners;
-  for (const std::string& name :
-       elements_for(session, {"SCREW", "WASHER", "NUT", "TEE"}, family_of(session, instance))) {
-    if (const auto fastener = fastener_of(session.element(name))) fasteners.push_back(*fastener);
+  // T-nuts apart: a slot system has its own, and screws of any other.
+  for (const std::set<std::string>& roles :
+       {std::set<std::string>{"SCREW", "WASHER", "NUT"}, std::set<std::string>{"TEE"}}) {
+    for (const std::string& name : elements_for(session, roles, family_of(session, instance))) {
+      if (const auto fastener = fastener_of(session.element(name))) fasteners.push_back(*fastener);
+    }
   }
   return fasteners;
 }
@@ -158,6 +161,30 @@ struct SlotBelow {
   PlacedFeature slot;
   double mouth_mm = 0.0;  ///< its depth along the bore
 };
+
+/// Depth at which the axis leaves the last part where its bore ends in a slot of its foot, as those
+/// for keys do.
+double past_key_slot(Session& session, const Eigen::Vector3d& start_W,
+                     const Eigen::Vector3d& direction_W, double reached_mm) {
+  for (const Instance* instance : session.state().in_order()) {
+    for (const Feature& slot : session.element(instance->element).features) {
+      if (slot.kind != FeatureKind::Slot || !slot.slot) continue;
+      const PlacedFeature placed{&slot, instance->X_WI};
+      if ((placed.direction_W() + direction_W).norm() > kCoaxial_rad) continue;
+      const Eigen::Vector3d off_W = placed.origin_W() - start_W;
+      const double mouth_mm = off_W.dot(direction_W);
+      const Eigen::Vector3d run_W = instance->X_WI.rotation() * slot.slot->run;
+      const Eigen::Vector3d beside_W = off_W - mouth_mm * direction_W;
+      const double along_mm = run_W.dot(beside_W);
+      if (std::abs(mouth_mm - slot.depth_mm - reached_mm) <= kOpenJoint_mm &&
+          (beside_W - along_mm * run_W).norm() <= 0.5 * slot.diameter_mm &&
+          std::abs(along_mm) <= 0.5 * slot.slot->length_mm) {
+        return mouth_mm;
+      }
+    }
+  }
+  return reached_mm;
+}
 
 /// The slot whose mouth the axis meets where the last part ends, in its middle.
 std::optional<SlotBelow> slot_below(Session& session, const Eigen::Vector3d& start_W,
@@ -317,11 +344,12 @@ FasteningPlan plan_fastening(Session& session, const FeatureName& hole) {
     plan.hole = hole;
     plan.seat_mm = in_counterbore ? step_mm : 0.0;
     const Eigen::Vector3d direction_W = at.direction_W().normalized();
-    Bore bore = bore_along(session, at.origin_W() + plan.seat_mm * direction_W, direction_W);
     FasteningOptions options;
     options.needs_washer = !in_counterbore;
-    const auto below = slot_below(session, at.origin_W() + plan.seat_mm * direction_W, direction_W,
-                                  bore.reached_mm);
+    const Eigen::Vector3d start_W = at.origin_W() + plan.seat_mm * direction_W;
+    Bore bore = bore_along(session, start_W, direction_W);
+    const double reached_mm = past_key_slot(session, start_W, direction_W, bore.reached_mm);
+    const auto below = slot_below(session, start_W, direction_W, reached_mm);
     FasteningChoices choices = below ? choose_in_slot(bore, *below, fitting, options)
                                      : choose_fastening(bore.stretches, fitting, options);
     if (below) bore.holes.push_back(below->name);

@@ -60,16 +60,37 @@ ProjectElement screw(int length_mm) {
       {testing::shaft_feature("pin1", {0, 0, length}, -Vector3d::UnitZ(), 12.0, length)});
 }
 
+/// The riser, whose bore may end in a key slot of its foot, 5 deep and 18 wide.
+ProjectElement riser(bool has_key_slot) {
+  ProjectElement riser = testing::riser_element();
+  if (!has_key_slot) return riser;
+  Feature& hole = riser.element.features.front();
+  hole.depth_mm = 35.0;
+  hole.segments.front().to_mm = 35.0;
+  Feature slot;
+  slot.name = "slot1";
+  slot.kind = dowel::FeatureKind::Slot;
+  slot.direction = Vector3d::UnitZ();
+  slot.diameter_mm = 18.0;
+  slot.depth_mm = 5.0;
+  slot.slot = dowel::SlotShape{};
+  slot.slot->length_mm = 60.0;
+  riser.element.features.push_back(slot);
+  return riser;
+}
+
 }  // namespace
 
 TEST_CASE("over a T-slot a screw is chosen with the T-nut that fits the slot") {
+  const bool has_key_slot = GENERATE(false, true);
+  CAPTURE(has_key_slot);
   testing::Workshop shop;
   const auto file = shop.folder / "slots.db";
   {
     dowel::Catalog catalog(file, dowel::Catalog::Access::ReadWrite);
     for (const ProjectElement& element :
          {slot_plate(), tee_nut("S/tee-nut-M12", 10.106), tee_nut("S/tee-nut-M10", 8.376),
-          screw(50), screw(60), screw(70), testing::riser_element()}) {
+          screw(50), screw(60), screw(70), riser(has_key_slot)}) {
       dowel::SourceRecord source;
       source.path = element.element.source;
       source.status = "ok";

@@ -1,0 +1,128 @@
+// The words that move parts within their mates, and tell by which ways they come and go.
+
+#include <numbers>
+#include <optional>
+
+#include "console_commands.h"
+#include "console_read.h"
+#include "console_text.h"
+#include "table.h"
+
+namespace dowel::tools {
+namespace {
+
+/// block, slide, warn or off, where it comes next.
+std::optional<DragMode> take_drag_mode(Arguments& arguments) {
+  using enum DragMode;
+  for (const DragMode mode : {Block, Slide, Warn, Off}) {
+    if (arguments.take(to_string(mode))) return mode;
+  }
+  return std::nullopt;
+}
+
+std::string names_text(const std::vector<Touch>& touches) {
+  std::string text;
+  for (const Touch& touch : touches) text += (text.empty() ? "" : ", ") + touch.with;
+  return text;
+}
+
+DragRequest read_drag(Console& console, Arguments& arguments) {
+  DragRequest request;
+  request.instance = read_instance(console, arguments);
+  if (arguments.take("by")) {
+    request.by_mm_W = arguments.point("a distance in mm along x, y and z");
+  } else if (arguments.take("to")) {
+    request.by_mm_W = arguments.point("three coordinates in mm") -
+                      console.session().instance(request.instance).X_WI.translation();
+  } else if (arguments.take("along")) {
+    const Axis axis = read_axis(console, arguments);
+    request.by_mm_W = arguments.number("a distance in mm") * axis.direction_W;
+  } else if (arguments.take("turn")) {
+    request.turn_rad = read_angle(arguments);
+    if (request.turn_rad == 0.0) arguments.fail_at_last("a turn is not of 0 degrees");
+    if (arguments.take("about")) {
+      const Axis axis = read_axis(console, arguments);
+      request.axis_W = axis.direction_W;
+      request.point_W = axis.point_W;
+    }
+  } else {
+    arguments.fail("expected `by`, `to`, `along` or `turn`");
+  }
+  request.mode = take_drag_mode(arguments);
+  return request;
+}
+
+std::string way_text(const WayOut& way) {
+  std::string text = "along " + way.along + " (" + point_text(way.direction_W) + "): ";
+  if (way.blocked_by.empty()) return text + "free, " + length_text(way.way_mm) + " mm to clear";
+  return text + "blocked by " + names_text(way.blocked_by) + " after " + length_text(way.free_mm) +
+         " of " + length_text(way.way_mm) + " mm";
+}
+
+Json to_json(const WayOut& way) {
+  Json json{{"along", way.along},
+            {"direction", tools::to_json(way.direction_W)},
+            {"free", way.blocked_by.empty()},
+            {"way_mm", way.way_mm},
+            {"free_mm", way.free_mm},
+            {"blocked_by", Json::array()}};
+  for (const Touch& touch : way.blocked_by) json["blocked_by"].push_back(touch.with);
+  return json;
+}
+
+}  // namespace
+
+Reply run_drag(Console& console, Arguments& arguments) {
+  const DragRequest request = read_drag(console, arguments);
+  arguments.expect_end();
+  const DragReport report = console.session().drag(request, arguments.line());
+  const MoveReport& move = report.move;
+  MoveReport at_end = move;  // what is told of the way follows
+  at_end.free_share = 1.0;
+  Reply reply = to_reply(at_end, request.turn_rad != 0.0 ? "turned, at" : "dragged to");
+  if (!move.stopped_by.empty() && !move.refused) {
+    reply.text += report.slid ? "; slid along " : "; stopped by ";
+    reply.text += names_text(move.stopped_by);
+    if (!report.slid) {
+      constexpr double kPercent = 100.0;
+      reply.text += " after " + short_number(kPercent * move.free_share) + " % of the way";
+    }
+  }
+  const double allowed_mm = report.allowed_mm_W.norm();
+  if (request.turn_rad == 0.0 &&
+      (report.allowed_mm_W - report.asked_mm_W).norm() >= kCoincident_mm) {
+    reply.text += "\n" + move.instance + ": its mates leave " + length_text(allowed_mm) + " of " +
+                  length_text(report.asked_mm_W.norm()) + " mm, by " +
+                  point_text(report.allowed_mm_W);
+  }
+  for (const std::string& name : move.moved_along) reply.text += "\n" + name + ": goes along";
+  if (move.checked) reply.json["free_share"] = move.free_share;
+  reply.json["slid"] = report.slid;
+  reply.json["stopped_by"] = Json::array();
+  for (const Touch& touch : move.stopped_by) reply.json["stopped_by"].push_back(touch.with);
+  if (request.turn_rad == 0.0) reply.json["allowed_mm"] = tools::to_json(report.allowed_mm_W);
+  return reply;
+}
+
+Reply run_way(Console& console, Arguments& arguments) {
+  const std::string name = read_instance(console, arguments);
+  WayQuery query;
+  query.with_sub_assembly = arguments.take("all");
+  arguments.expect_end();
+  const std::vector<WayOut> ways = console.session().ways_out(name, query);
+  Reply reply;
+  reply.json["instance"] = name;
+  reply.json["ways"] = Json::array();
+  const bool is_free = !ways.empty() && ways.front().blocked_by.empty();
+  reply.text = name + (is_free ? ": can be brought in and taken out"
+                               : ": cannot be brought in or taken out on a straight way");
+  for (const WayOut& way : ways) {
+    reply.text += "\n  " + way_text(way);
+    reply.json["ways"].push_back(to_json(way));
+  }
+  reply.json["free"] = is_free;
+  reply.has_findings = !is_free;
+  return reply;
+}
+
+}  // namespace dowel::tools
