@@ -60,7 +60,8 @@ std::string fastening_text(const Fastening& way, const FasteningPlan& plan) {
   }
   return text + length_text(way.engagement_mm) + " mm (" + in_diameters + " d) in the thread of " +
          (way.tee_nut ? way.tee_nut->element + " in " : std::string()) +
-         plan.holes.at(way.thread).text() + ", " + length_text(way.spare_mm) + " mm before its end";
+         plan.holes.at(way.thread).text() + ", " + length_text(way.spare_mm) +
+         (way.tee_nut ? " mm above the slot's floor" : " mm before its end");
 }
 
 Json to_json(const Fastening& way, const FasteningPlan& plan) {

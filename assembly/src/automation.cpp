@@ -212,7 +212,11 @@ std::optional<SlotBelow> slot_below(Session& session, const Eigen::Vector3d& sta
   return std::nullopt;
 }
 
-/// Ways with each T-nut that fits the slot; their thread is the hole behind the last of the bore.
+/// Full threads in a T-nut, in diameters: it is heat-treated (DIN 508), where a part need not be.
+constexpr double kTeeNutEngagement = 0.9;
+
+/// Ways with each T-nut that fits the slot; the screw may look out of it, short of the slot's
+/// floor; their thread is the hole behind the last of the bore.
 FasteningChoices choose_in_slot(const Bore& bore, const SlotBelow& below,
                                 std::span<const Fastener> fasteners,
                                 const FasteningOptions& options) {
@@ -229,17 +233,20 @@ FasteningChoices choose_in_slot(const Bore& bore, const SlotBelow& below,
     }
     const double shoulder_mm = below.mouth_mm + shape.throat_depth_mm;
     std::vector<BoreStretch> stretches = bore.stretches;
-    stretches.push_back({shoulder_mm - (nut.length_mm - nut.foot_height_mm),
-                         shoulder_mm + nut.foot_height_mm, nut.core_diameter_mm,
-                         bore.holes.size()});
+    const double top_mm = shoulder_mm - (nut.length_mm - nut.foot_height_mm);
+    stretches.push_back({top_mm, below.mouth_mm + below.slot.feature->depth_mm,
+                         nut.core_diameter_mm, bore.holes.size()});
     std::vector<Fastener> fitting(fasteners.begin(), fasteners.end());
     std::erase_if(fitting, [&](const Fastener& other) {
       return other.kind == Fastener::Kind::Screw && other.nominal_mm != nut.nominal_mm;
     });
-    FasteningChoices choices = choose_fastening(stretches, fitting, options);
+    FasteningOptions in_nut = options;
+    in_nut.engagement_in_diameters = kTeeNutEngagement;
+    FasteningChoices choices = choose_fastening(stretches, fitting, in_nut);
     for (Fastening& way : choices.ways) {
       if (way.nut || way.thread != bore.holes.size()) continue;
       way.tee_nut = nut;
+      way.engagement_mm = std::min(way.engagement_mm, nut.length_mm);
       all.ways.push_back(std::move(way));
     }
     if (!choices.reason.empty()) {

@@ -28,7 +28,7 @@ constexpr double kProbe = 100.0;
 constexpr int kHalvings = 32;
 
 /// A slide shorter than this share of the tolerance is none.
-constexpr double kStandsStill = 1.0e-3;
+constexpr double kStandsStill = 1.0e-2;
 
 DragMode drag_mode(const DragRequest& request, CheckMode mode) {
   if (request.mode) return *request.mode;

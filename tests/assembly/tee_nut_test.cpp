@@ -108,14 +108,15 @@ TEST_CASE("over a T-slot a screw is chosen with the T-nut that fits the slot") {
   session.place("S/plate-T14", "PLATE", X_WP, "place");
   session.place("T/riser-60x60x40", "RISER", Pose::from_translation({5, 33, 60}), "place");
   const FasteningPlan plan = dowel::plan_fastening(session, {"RISER", "h1"});
-  // 40 mm of riser and 8 of throat over the nut: 60 has 12 mm of thread in its 16.
+  // 40 mm of riser and 8 of throat over the nut: 60 has 12 mm of thread in its 16, 50 too little,
+  // and 70 would stand on the floor.
   REQUIRE(plan.ways.size() == 1);
   CHECK(plan.ways[0].screw.element == "S/screw-M12x60");
   REQUIRE(plan.ways[0].tee_nut);
   CHECK(plan.ways[0].tee_nut->element == "S/tee-nut-M12");
   CHECK(plan.ways[0].grip_mm == Approx(48.0));
   CHECK(plan.ways[0].engagement_mm == Approx(12.0));
-  CHECK(plan.ways[0].spare_mm == Approx(4.0));
+  CHECK(plan.ways[0].spare_mm == Approx(6.0));  // to the slot's floor at 66
   CHECK(plan.holes.at(plan.ways[0].thread).text() == "PLATE.slot1");
 
   const auto reports = dowel::fasten(session, plan, 0, "fasten");
