@@ -70,8 +70,7 @@ void PlacedBodies::forget(const std::string& element) {
 void PlacedBodies::add(const Instance& instance) {
   const BodyId id = scene_.add(shape(instance.element), instance.X_WI);
   const std::size_t kind = kinds_.try_emplace(instance.element, kinds_.size()).first->second;
-  bodies_.emplace(instance.name,
-                  Body{id, instance.number, instance.element, kind, instance.X_WI});
+  bodies_.emplace(instance.name, Body{id, instance.number, instance.element, kind, instance.X_WI});
   names_.emplace(id, instance.name);
 }
 

@@ -15,8 +15,8 @@ namespace {
 constexpr const char* kModeSetting = "mode";
 constexpr const char* kToleranceSetting = "tolerance_mm";
 
-/// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`. Side by side,
-/// for both are sorted and mostly the same.
+/// Adds what is only in `from`, or differs, to `before`, and likewise `to` to `after`. Side by
+/// side, for both are sorted and mostly the same.
 template <class Map, class Row>
 void add_difference(const Map& from, const Map& to, std::vector<Row>& before,
                     std::vector<Row>& after) {

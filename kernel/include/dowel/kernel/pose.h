@@ -8,8 +8,8 @@ namespace dowel {
 /// frame B in frame A: `p_AQ = X_AB * p_BQ` and `X_AC = X_AB * X_BC`.
 ///
 /// Products are renormalised where rounding has grown, so that a chain of moves stays rigid (1e7
-/// random small moves and their inverses: 5e-10 mm at 1 m). Two poses that differ only in the sign of the quaternion are the same
-/// placement but not equal; `canonical()` picks the one with w >= 0.
+/// random small moves and their inverses: 5e-10 mm at 1 m). Two poses that differ only in the sign
+/// of the quaternion are the same placement but not equal; `canonical()` picks the one with w >= 0.
 class Pose {
  public:
   /// The identity.
