@@ -130,6 +130,9 @@ struct PinSize {
 /// Half angle of the lead-in cone of a pin, in degrees, and its length as a part of the head.
 inline constexpr double kPinLeadIn_deg = 15.0;
 inline constexpr double kPinLeadInShare = 1.0 / 3.0;
+/// Of a shank that is pressed in, at the same angle: an edge broken at 45 degrees looks like the
+/// end of a thread.
+inline constexpr double kShankLeadIn_mm = 1.0;
 
 /// Clamp strap like DIN 6314 (general knowledge): slot, length, width, height.
 struct StrapSize {

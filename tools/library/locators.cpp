@@ -89,7 +89,8 @@ Part locating_pin(const System& system, const PinSize& size, bool diamond) {
   Part part;
   const double head_mm = size.fit_diameter_mm / 2.0;
   const double shank_mm = size.shank_diameter_mm / 2.0;
-  const double chamfer_mm = 0.5;
+  const double shank_lead_mm = kShankLeadIn_mm;
+  const double shank_drop_mm = shank_lead_mm * std::tan(kPinLeadIn_deg / 180.0 * std::numbers::pi);
   const double lead_mm = size.head_length_mm * kPinLeadInShare;
   const double lead_drop_mm = lead_mm * std::tan(kPinLeadIn_deg / 180.0 * std::numbers::pi);
   part.name =
@@ -105,8 +106,8 @@ Part locating_pin(const System& system, const PinSize& size, bool diamond) {
                      {"shank_length", size.shank_length_mm}};
   if (diamond) part.dimensions.push_back({"land", size.land_mm});
   const std::vector<Eigen::Vector2d> shank{{0.0, -size.shank_length_mm},
-                                           {shank_mm - chamfer_mm, -size.shank_length_mm},
-                                           {shank_mm, -size.shank_length_mm + chamfer_mm},
+                                           {shank_mm - shank_drop_mm, -size.shank_length_mm},
+                                           {shank_mm, -size.shank_length_mm + shank_lead_mm},
                                            {shank_mm, 0.0}};
   const std::vector<Eigen::Vector2d> head{{head_mm, 0.0},
                                           {head_mm, size.head_length_mm - lead_mm},
@@ -125,8 +126,9 @@ Part locating_pin(const System& system, const PinSize& size, bool diamond) {
     part.features.push_back(
         fitted(shaft_down("head", straight_mm, size.fit_diameter_mm, straight_mm), "g6"));
   }
-  part.features.push_back(fitted(
-      shaft_down("shank", 0.0, size.shank_diameter_mm, size.shank_length_mm - chamfer_mm), "n6"));
+  part.features.push_back(
+      fitted(shaft_down("shank", 0.0, size.shank_diameter_mm, size.shank_length_mm - shank_lead_mm),
+             "n6"));
   part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
   part.colour = kPinColour;
   return part;
