@@ -1,13 +1,12 @@
 #include "dowel/catalog/catalog.h"
 
-#include <limits>
 #include <new>
 #include <utility>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <sqlite3.h>
 
-#include "checksum.h"
+#include "content_rows.h"
 #include "dowel/catalog/search.h"
 #include "dowel/kernel/blob.h"
 #include "dowel/kernel/check.h"
@@ -234,27 +233,6 @@ SQLite::Database open(const std::filesystem::path& file, Catalog::Access access)
   });
 }
 
-/// As SQLite's signed number.
-std::int64_t stored_checksum(std::span<const std::byte> bytes) {
-  return static_cast<std::int64_t>(checksum(bytes));
-}
-
-void insert_content(SQLite::Database& database, std::int64_t element_id, const char* kind,
-                    std::span<const std::byte> bytes) {
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw SQLite::Exception("content too large", SQLITE_TOOBIG);
-  }
-  SQLite::Statement statement(
-      database, "INSERT INTO content (element_id, kind, checksum, bytes) VALUES (?, ?, ?, ?)");
-  statement.bind(1, element_id);
-  statement.bind(2, kind);
-  statement.bind(3, stored_checksum(bytes));
-  // A null pointer would be stored as NULL, not as a blob without bytes.
-  const void* const data = bytes.empty() ? static_cast<const void*>("") : bytes.data();
-  statement.bindNoCopy(4, data, static_cast<int>(bytes.size()));
-  statement.exec();
-}
-
 /// `name`, or the first of `name~2`, `name~3`, … that no element carries.
 std::string free_name(SQLite::Database& database, const std::string& name) {
   SQLite::Statement taken(database, "SELECT 1 FROM element WHERE name = ?");
@@ -293,29 +271,22 @@ struct Catalog::Impl {
   Impl(const std::filesystem::path& path, Access access)
       : file(path), name(path.string()), database(open(path, access)) {}
 
+  /// Prepared when it is first wanted: a catalogue is to open at once.
+  ElementReader& reader() {
+    if (!reader_) reader_.emplace(database, name);
+    return *reader_;
+  }
+
   std::vector<std::byte> content(std::string_view element, const char* kind);
+
+ private:
+  std::optional<ElementReader> reader_;
 };
 
 std::vector<std::byte> Catalog::Impl::content(std::string_view element, const char* kind) {
   return guarded(name, Doing::Reading, [&] {
-    SQLite::Statement statement(database,
-                                "SELECT bytes, checksum FROM element LEFT JOIN content"
-                                " ON element_id = element.id AND kind = ?2 WHERE name = ?1");
-    statement.bind(1, std::string(element));
-    statement.bind(2, kind);
-    if (!statement.executeStep()) {
-      throw Error(ErrorCode::NotFound, name + ": has no element \"" + std::string(element) + "\"");
-    }
-    const SQLite::Column bytes = statement.getColumn(0);
-    const auto* data = static_cast<const std::byte*>(bytes.getBlob());
-    const auto size = static_cast<std::size_t>(bytes.getBytes());
-    std::vector<std::byte> result(data, data + size);
-    if (!bytes.isBlob() || stored_checksum(result) != statement.getColumn(1).getInt64()) {
-      throw Error(ErrorCode::FileMalformed, name + ": is damaged: the " + kind + " of element \"" +
-                                                std::string(element) +
-                                                "\" do not match their checksum");
-    }
-    return result;
+    const SQLite::Transaction snapshot(database);
+    return select_content(database, element, kind, name);
   });
 }
 
@@ -342,7 +313,7 @@ std::optional<Element> Catalog::find(std::string_view name) const {
   return guarded(impl_->name, Doing::Reading, [this, name] {
     // One snapshot for all tables, though another program may be writing.
     const SQLite::Transaction snapshot(impl_->database);
-    return select_element(impl_->database, name, impl_->name);
+    return impl_->reader().read(name);
   });
 }
 
@@ -395,6 +366,7 @@ std::vector<std::string> Catalog::put(const SourceRecord& source,
   return guarded(impl_->name, Doing::Writing, [&] {
     SQLite::Database& database = impl_->database;
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    const std::vector<std::int64_t> former_blobs = blobs_of_source(database, source.path);
     const std::int64_t source_id = replace_source(database, source);
     std::vector<std::string> names;
     for (const ElementRecord& record : elements) {
@@ -407,6 +379,7 @@ std::vector<std::string> Catalog::put(const SourceRecord& source,
       names.push_back(element.name);
     }
     insert_instances(database, source_id, source.instances);
+    remove_unused_blobs(database, former_blobs);
     transaction.commit();
     return names;
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dowel/kernel/error.h"
@@ -192,9 +193,9 @@ struct FeatureRows {
   }
 };
 
-FeatureRows select_features(SQLite::Database& database, std::int64_t element_id,
+FeatureRows select_features(SQLite::Statement& statement, std::int64_t element_id,
                             const std::string& place) {
-  SQLite::Statement statement(database, kSelectFeatures);
+  statement.reset();
   statement.bind(1, element_id);
   FeatureRows rows;
   while (statement.executeStep()) {
@@ -218,9 +219,9 @@ FeatureRows select_features(SQLite::Database& database, std::int64_t element_id,
   return rows;
 }
 
-void select_segments(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+void select_segments(SQLite::Statement& statement, std::int64_t element_id, FeatureRows& rows,
                      const std::string& place) {
-  SQLite::Statement statement(database, kSelectSegments);
+  statement.reset();
   statement.bind(1, element_id);
   while (statement.executeStep()) {
     RowReader row(statement, place);
@@ -238,10 +239,10 @@ void select_segments(SQLite::Database& database, std::int64_t element_id, Featur
   }
 }
 
-void select_slots(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+void select_slots(SQLite::Statement& statement, std::int64_t element_id, FeatureRows& rows,
                   const std::string& place) {
   using enum SlotShape::End;
-  SQLite::Statement statement(database, kSelectSlots);
+  statement.reset();
   statement.bind(1, element_id);
   while (statement.executeStep()) {
     RowReader row(statement, place);
@@ -263,9 +264,9 @@ void select_slots(SQLite::Database& database, std::int64_t element_id, FeatureRo
   }
 }
 
-void select_designs(SQLite::Database& database, std::int64_t element_id, FeatureRows& rows,
+void select_designs(SQLite::Statement& statement, std::int64_t element_id, FeatureRows& rows,
                     const std::string& place) {
-  SQLite::Statement statement(database, kSelectFeatureDesigns);
+  statement.reset();
   statement.bind(1, element_id);
   while (statement.executeStep()) {
     RowReader row(statement, place);
@@ -284,9 +285,9 @@ void select_designs(SQLite::Database& database, std::int64_t element_id, Feature
   }
 }
 
-void select_design(SQLite::Database& database, std::int64_t element_id, Element& element,
+void select_design(SQLite::Statement& statement, std::int64_t element_id, Element& element,
                    const std::string& place) {
-  SQLite::Statement statement(database, kSelectElementDesign);
+  statement.reset();
   statement.bind(1, element_id);
   if (!statement.executeStep()) return;  // put before it was kept
   RowReader row(statement, place);
@@ -297,10 +298,9 @@ void select_design(SQLite::Database& database, std::int64_t element_id, Element&
   element.density_kg_per_m3 = row.real();
 }
 
-std::vector<BoltCircle> select_bolt_circles(SQLite::Database& database, std::int64_t element_id,
-                                            const std::string& place) {
-  SQLite::Statement circles(database, kSelectBoltCircles);
-  SQLite::Statement holes(database, kSelectBoltCircleHoles);
+std::vector<BoltCircle> select_bolt_circles(SQLite::Statement& circles, SQLite::Statement& holes,
+                                            std::int64_t element_id, const std::string& place) {
+  circles.reset();
   circles.bind(1, element_id);
   std::vector<BoltCircle> result;
   while (circles.executeStep()) {
@@ -346,14 +346,57 @@ std::int64_t insert_element(SQLite::Database& database, std::int64_t source_id,
   return id;
 }
 
-std::optional<Element> select_element(SQLite::Database& database, std::string_view name,
-                                      std::string_view file) {
-  SQLite::Statement statement(database, kSelectElement);
+ElementReader::ElementReader(SQLite::Database& database, std::string file)
+    : file_(std::move(file)), version_(database, "PRAGMA user_version"), database_(database) {}
+
+ElementReader::Statements::Statements(SQLite::Database& database, std::int64_t of_version)
+    : version(of_version),
+      element(database, kSelectElement),
+      features(database, kSelectFeatures),
+      segments(database, kSelectSegments) {
+  if (version >= kSlotVersion) slots.emplace(database, kSelectSlots);
+  if (version >= kDesignVersion) {
+    feature_designs.emplace(database, kSelectFeatureDesigns);
+    element_design.emplace(database, kSelectElementDesign);
+  }
+  if (version >= kBoltCircleVersion) {
+    bolt_circles.emplace(database, kSelectBoltCircles);
+    bolt_circle_holes.emplace(database, kSelectBoltCircleHoles);
+  }
+}
+
+void ElementReader::Statements::reset() noexcept {
+  for (SQLite::Statement* const statement : {&element, &features, &segments}) statement->tryReset();
+  for (auto* const statement :
+       {&slots, &feature_designs, &element_design, &bolt_circles, &bolt_circle_holes}) {
+    if (*statement) (*statement)->tryReset();
+  }
+}
+
+ElementReader::Statements& ElementReader::statements() {
+  version_.executeStep();
+  const std::int64_t version = version_.getColumn(0).getInt64();
+  version_.reset();
+  // Another program may have brought the file up to date since the last time.
+  if (!statements_ || statements_->version != version) statements_.emplace(database_, version);
+  return *statements_;
+}
+
+std::optional<Element> ElementReader::read(std::string_view name) {
+  struct Reset {
+    Statements& statements;
+    ~Reset() { statements.reset(); }
+  } const reset{statements()};
+  return read(reset.statements, name, file_);
+}
+
+std::optional<Element> ElementReader::read(Statements& statements, std::string_view name,
+                                           const std::string& file) {
+  SQLite::Statement& statement = statements.element;
   statement.bind(1, std::string(name));
   if (!statement.executeStep()) return std::nullopt;
 
-  const std::string place =
-      std::string(file) + ": is damaged: element \"" + std::string(name) + "\"";
+  const std::string place = file + ": is damaged: element \"" + std::string(name) + "\"";
   RowReader row(statement, place);
   const std::int64_t id = row.integer();
   Element element;
@@ -383,16 +426,14 @@ std::optional<Element> select_element(SQLite::Database& database, std::string_vi
   const std::optional<double> blue = row.optional_real();
   if (red && green && blue) element.colour = {*red, *green, *blue};
 
-  FeatureRows rows = select_features(database, id, place);
-  select_segments(database, id, rows, place);
-  const std::int64_t version = database.execAndGet("PRAGMA user_version").getInt64();
-  if (version >= kSlotVersion) select_slots(database, id, rows, place);
-  if (version >= kDesignVersion) {
-    select_designs(database, id, rows, place);
-    select_design(database, id, element, place);
-  }
-  if (version >= kBoltCircleVersion) {
-    element.bolt_circles = select_bolt_circles(database, id, place);
+  FeatureRows rows = select_features(statements.features, id, place);
+  select_segments(statements.segments, id, rows, place);
+  if (statements.slots) select_slots(*statements.slots, id, rows, place);
+  if (statements.feature_designs) select_designs(*statements.feature_designs, id, rows, place);
+  if (statements.element_design) select_design(*statements.element_design, id, element, place);
+  if (statements.bolt_circles) {
+    element.bolt_circles =
+        select_bolt_circles(*statements.bolt_circles, *statements.bolt_circle_holes, id, place);
   }
   element.features = std::move(rows.features);
   if (const auto defect = find_defect(element)) {

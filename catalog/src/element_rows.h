@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -17,9 +18,42 @@ namespace dowel {
 std::int64_t insert_element(SQLite::Database& database, std::int64_t source_id,
                             std::int64_t position, const Element& element);
 
-/// The element called `name`. The rows are untrusted: throws Error{FileMalformed} beginning with
-/// `file` where they make no sound element, SQLite::Exception where they cannot be read.
-std::optional<Element> select_element(SQLite::Database& database, std::string_view name,
-                                      std::string_view file);
+/// Reads elements one by one with statements that are prepared once: of many elements, preparing
+/// would take most of the time. Between two reads none of them is left open, for that would lock
+/// the file.
+class ElementReader {
+ public:
+  /// `file` begins every complaint. The database must outlive the reader.
+  ElementReader(SQLite::Database& database, std::string file);
+
+  /// The element called `name`. The rows are untrusted: throws Error{FileMalformed} where they make
+  /// no sound element, SQLite::Exception where they cannot be read.
+  std::optional<Element> read(std::string_view name);
+
+ private:
+  /// Those of tables that the catalogue's version does not have are missing.
+  struct Statements {
+    Statements(SQLite::Database& database, std::int64_t of_version);
+    void reset() noexcept;
+
+    std::int64_t version;
+    SQLite::Statement element;
+    SQLite::Statement features;
+    SQLite::Statement segments;
+    std::optional<SQLite::Statement> slots;
+    std::optional<SQLite::Statement> feature_designs;
+    std::optional<SQLite::Statement> element_design;
+    std::optional<SQLite::Statement> bolt_circles;
+    std::optional<SQLite::Statement> bolt_circle_holes;
+  };
+  Statements& statements();
+  static std::optional<Element> read(Statements& statements, std::string_view name,
+                                     const std::string& file);
+
+  std::string file_;
+  SQLite::Statement version_;
+  SQLite::Database& database_;
+  std::optional<Statements> statements_;
+};
 
 }  // namespace dowel

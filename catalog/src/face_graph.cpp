@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "dowel/kernel/check.h"
 #include "surface_fit.h"
@@ -37,11 +38,21 @@ std::vector<Side> sorted_sides(const FacetedSolid& solid) {
       sides.push_back({std::min(a, b), std::max(a, b), lump, a < b, t});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tuple_cat(a.key(), std::tie(a.runs_up, a.triangle)) <
-           std::tuple_cat(b.key(), std::tie(b.runs_up, b.triangle));
-  });
-  return sides;
+  // By the lower vertex in one pass, for there are many sides; what is left to sort is short.
+  std::vector<std::uint32_t> begin(solid.vertices.size() + 1, 0);
+  for (const Side& side : sides) ++begin[side.low + 1];
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<Side> sorted(sides.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (const Side& side : sides) sorted[next[side.low]++] = side;
+  for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
+    std::sort(sorted.begin() + begin[v], sorted.begin() + begin[v + 1],
+              [](const Side& a, const Side& b) {
+                return std::tie(a.high, a.solid, a.runs_up, a.triangle) <
+                       std::tie(b.high, b.solid, b.runs_up, b.triangle);
+              });
+  }
+  return sorted;
 }
 
 std::uint32_t third_vertex(const Triangle& t, std::uint32_t a, std::uint32_t b) {
@@ -88,14 +99,18 @@ std::vector<FaceNode> face_graph(const FacetedSolid& solid) {
   }
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
     DOWEL_EXPECTS(solid.face_of[t] < nodes.size());
-    FaceNode& node = nodes[solid.face_of[t]];
-    node.triangles.push_back(t);
-    node.vertices.insert(node.vertices.end(), solid.triangles[t].begin(), solid.triangles[t].end());
+    nodes[solid.face_of[t]].triangles.push_back(t);
   }
   add_rims(solid, nodes);
+  std::vector<std::size_t> seen_by(solid.vertices.size(), nodes.size());  // the last face to do so
   for (std::size_t f = 0; f < nodes.size(); ++f) {
     FaceNode& node = nodes[f];
-    sort_unique(node.vertices);
+    for (const std::uint32_t t : node.triangles) {
+      for (const std::uint32_t v : solid.triangles[t]) {
+        if (std::exchange(seen_by[v], f) != f) node.vertices.push_back(v);
+      }
+    }
+    std::sort(node.vertices.begin(), node.vertices.end());
     sort_unique(node.neighbours);
     if (!std::holds_alternative<OtherSurface>(node.surface)) continue;
     if (const auto fit = fit_surface(solid, solid.faces[f], node.triangles)) {

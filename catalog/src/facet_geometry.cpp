@@ -1,14 +1,25 @@
 #include "facet_geometry.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 
 namespace dowel {
 
-double ordered_sum(std::vector<double> terms) {
-  std::sort(terms.begin(), terms.end());
-  double sum = 0.0;
-  for (const double term : terms) sum += term;
-  return sum;
+double ordered_sum(std::span<const double> terms) {
+  double largest = 0.0;
+  for (const double term : terms) largest = std::max(largest, std::abs(term));
+  if (largest == 0.0 || !std::isfinite(largest)) return largest;
+  // Whole numbers, whose sum knows no order: as fine as fits so many of them into 63 bits.
+  constexpr int kSmallest = -900;  // so that the scale is finite, too
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  const int bits = 62 - static_cast<int>(std::bit_width(terms.size()));
+  const double scale = std::ldexp(1.0, bits - std::max(exponent, kSmallest));
+  std::int64_t sum = 0;
+  for (const double term : terms) sum += std::llrint(term * scale);
+  return static_cast<double>(sum) / scale;
 }
 
 Eigen::Vector3d ordered_sum(const std::vector<Eigen::Vector3d>& terms) {

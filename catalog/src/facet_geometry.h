@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "dowel/kernel/faceted_solid.h"
@@ -7,7 +8,7 @@
 namespace dowel {
 
 /// Sum that does not depend on the order of the terms, to the bit.
-double ordered_sum(std::vector<double> terms);
+double ordered_sum(std::span<const double> terms);
 Eigen::Vector3d ordered_sum(const std::vector<Eigen::Vector3d>& terms);
 
 /// Corners of a triangle from its lexicographically smallest on: what is computed from them does

@@ -152,6 +152,29 @@ bool is_better(const Lattice& a, const Lattice& b) {
   return a.places < b.places;
 }
 
+/// Whether the spots stand on one circle, one of them perhaps in its middle: a bolt circle, though
+/// six around a seventh fill as many places of a lattice as a chequered grid does.
+bool is_circle(const std::vector<Spot>& spots, const std::vector<Cell>& cells) {
+  // A ring on more lines than three each way leaves too many places empty to come here.
+  constexpr std::size_t kMostOnRing = 12;
+  if (cells.size() > kMostOnRing) return false;
+  std::vector<Eigen::Vector2d> at;
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  for (const Spot& spot : spots) {
+    if (std::ranges::find(cells, spot.hole, &Cell::hole) == cells.end()) continue;
+    at.push_back(spot.at);
+    center += spot.at / static_cast<double>(cells.size());
+  }
+  double radius_mm = 0.0;
+  for (const Eigen::Vector2d& p : at) radius_mm = std::max(radius_mm, (p - center).norm());
+  const auto inside = std::ranges::count_if(at, [&](const Eigen::Vector2d& p) {
+    return (p - center).norm() < radius_mm - 2.0 * kCoaxial_mm;
+  });
+  const bool has_center = std::ranges::any_of(
+      at, [&](const Eigen::Vector2d& p) { return (p - center).norm() <= 2.0 * kCoaxial_mm; });
+  return inside == 0 || (inside == 1 && has_center);
+}
+
 /// The best lattice of that pitch: spots that are whole pitches away from one of them.
 std::optional<Lattice> best_of_pitch(const std::vector<Spot>& spots, const Eigen::Vector2d& pitch) {
   std::optional<Lattice> best;
@@ -169,6 +192,7 @@ std::optional<Lattice> best_of_pitch(const std::vector<Spot>& spots, const Eigen
     }
     if (cells.size() < kFewestHoles) continue;
     std::optional<Lattice> lattice = trimmed(std::move(cells));
+    if (lattice && is_circle(spots, lattice->cells)) continue;
     if (lattice && (!best || is_better(*lattice, *best))) best = std::move(lattice);
   }
   return best;

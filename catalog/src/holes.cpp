@@ -32,7 +32,8 @@ bool contains(const std::vector<std::uint32_t>& values, std::uint32_t value) {
 /// Inner bands of one axis, and which of them open into each other.
 class Bore {
  public:
-  Bore(const FacetedSolid& solid, const std::vector<FaceNode>& graph, const AxisBands& about)
+  Bore(const FacetedSolid& solid, const std::vector<FaceNode>& graph, const AxisBands& about,
+       VoidFinder& voids)
       : solid_(solid), graph_(graph), axis_(about.axis) {
     double narrowest_mm = std::numeric_limits<double>::infinity();
     for (const Band& band : about.bands) {
@@ -44,7 +45,7 @@ class Bore {
       bands_.clear();  // cones alone are no hole
       return;
     }
-    void_ = void_along(solid, about.solid, axis_, kCoreOffset * narrowest_mm);
+    void_ = voids.along(about.solid, axis_, kCoreOffset * narrowest_mm);
     for (const Band* band : bands_) stretch_.push_back(stretch_of(*band));
     link();
   }
@@ -300,8 +301,11 @@ class Bore {
 std::vector<HoleFinding> find_holes(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
                                     const std::vector<AxisBands>& axes) {
   std::vector<HoleFinding> result;
+  VoidFinder voids(solid);
   for (const AxisBands& about : axes) {
-    for (HoleFinding& hole : Bore(solid, graph, about).holes()) result.push_back(std::move(hole));
+    for (HoleFinding& hole : Bore(solid, graph, about, voids).holes()) {
+      result.push_back(std::move(hole));
+    }
   }
   return result;
 }

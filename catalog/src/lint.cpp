@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "checksum.h"
+#include "dowel/catalog/metric_thread.h"
 #include "dowel/catalog/recognition.h"
 #include "dowel/kernel/blob.h"
 #include "dowel/kernel/error.h"
@@ -26,6 +27,9 @@ constexpr double kLargestDiagonal_mm = 5000.0;
 
 /// Fewer facets around a hole than this do not describe it.
 constexpr double kFewestFacetsAround = 8.0;
+
+/// A stored box may be larger than the smallest found by this part of its volume.
+constexpr double kBoxVolumeSlack = 1.0e-3;
 
 std::string number(double value) {
   char text[32];
@@ -46,7 +50,10 @@ class ElementLint {
     if (defect) add("CAT-03", *defect);
     if (!defect) check_volume();
     if (faces_in_range_) check_holes();
+    check_box_is_tight();
+    check_faces();
     check_unit();
+    check_density();
     check_origin();
     return std::move(findings_);
   }
@@ -64,6 +71,12 @@ class ElementLint {
   void check_volume();
   void check_holes();
   void check_wall(const Feature& hole, const Face& face);
+  void check_thread(const Feature& feature);
+  void check_fit(const Feature& feature);
+  void check_box_is_tight();
+  void check_faces();
+  bool is_of(const Feature& feature, const Face& face) const;
+  void check_density();
   void check_unit();
   void check_origin();
 
@@ -115,7 +128,37 @@ void ElementLint::check_features() {
       }
     }
     if (feature.kind == FeatureKind::Hole) check_hole(feature);
+    check_thread(feature);
+    check_fit(feature);
   }
+}
+
+/// A thread is drawn as a cylinder between its minor and its nominal diameter.
+void ElementLint::check_thread(const Feature& feature) {
+  const MetricThread* const thread = find_metric_thread(feature.thread);
+  if (thread == nullptr) return;
+  const auto is_drawn = [thread](double diameter_mm) {
+    return diameter_mm >= thread->minor_mm() - kTapDrillSlack_mm &&
+           diameter_mm <= thread->nominal_mm + kTapDrillSlack_mm;
+  };
+  const bool is_somewhere =
+      is_drawn(feature.diameter_mm) ||
+      std::ranges::any_of(feature.segments, [&](const HoleSegment& segment) {
+        return segment.type == HoleSegment::Type::Cylinder && is_drawn(segment.diameter_mm);
+      });
+  if (is_somewhere) return;
+  add("CAT-01", "feature " + feature.name + " is to have the thread " + feature.thread +
+                    ", but its diameter is " + number(feature.diameter_mm) + " mm");
+}
+
+/// ISO 286 writes the class of a hole with a capital letter, that of a shaft with a small one.
+void ElementLint::check_fit(const Feature& feature) {
+  if (feature.fit.empty() || feature.kind == FeatureKind::Face) return;  // a key's flanks have one
+  const bool is_internal_fit = feature.fit[0] >= 'A' && feature.fit[0] <= 'Z';
+  const bool is_shaft = feature.kind == FeatureKind::Shaft;
+  if (is_internal_fit != is_shaft) return;
+  add("CAT-01", std::string(to_string(feature.kind)) + " " + feature.name + " has the fit " +
+                    feature.fit + ", which is one for " + (is_shaft ? "holes" : "shafts"));
 }
 
 void ElementLint::check_hole(const Feature& hole) {
@@ -176,6 +219,10 @@ void ElementLint::check_holes() {
     add("CAT-04", "has " + std::to_string(element_.triangles.hole) +
                       " triangles tagged as hole, its declared holes have " +
                       std::to_string(counts.hole));
+  } else if (counts.plane != element_.triangles.plane) {
+    add("CAT-04", "has " + std::to_string(element_.triangles.plane) +
+                      " triangles tagged as plane, its planar faces have " +
+                      std::to_string(counts.plane));
   }
   for (const Feature& feature : element_.features) {
     if (feature.kind != FeatureKind::Hole) continue;
@@ -207,6 +254,65 @@ void ElementLint::check_wall(const Feature& hole, const Face& face) {
   }
 }
 
+/// The box decides what is checked for collisions at all: a slack one costs time, no truth.
+void ElementLint::check_box_is_tight() {
+  if (solid_.vertices.empty()) return;
+  const double stored_mm3 = element_.obb.volume_mm3();
+  const double smallest_mm3 = enclosing_box(solid_).volume_mm3();
+  if (stored_mm3 <= (1.0 + kBoxVolumeSlack) * smallest_mm3) return;
+  add("CAT-09",
+      "its stored box holds " + number(stored_mm3) + " mm3, one of " + number(smallest_mm3) +
+          " mm3 holds it, too",
+      LintFinding::Severity::Warning);
+}
+
+/// Whether an exact face lies on what the feature says it is. Free-form faces are taken as they
+/// are, holes have a check of their own.
+bool ElementLint::is_of(const Feature& feature, const Face& face) const {
+  if (feature.kind == FeatureKind::Face) {
+    const auto* const plane = std::get_if<PlaneSurface>(&face.surface);
+    return plane == nullptr ||
+           (feature.direction.dot(plane->normal) > 0.0 &&
+            feature.direction.cross(plane->normal).norm() <= kStoredAxisSlack &&
+            std::abs(signed_distance_mm(face.surface, feature.origin)) <= kBoxSlack_mm);
+  }
+  if (feature.kind == FeatureKind::Shaft) {
+    const auto* const cylinder = std::get_if<CylinderSurface>(&face.surface);
+    return cylinder == nullptr ||
+           (feature.direction.cross(cylinder->origin - feature.origin).norm() <= kBoxSlack_mm &&
+            feature.direction.cross(cylinder->axis).norm() <= kStoredAxisSlack &&
+            std::abs(feature.diameter_mm - 2.0 * cylinder->radius_mm) <= kBoxSlack_mm);
+  }
+  return true;
+}
+
+void ElementLint::check_faces() {
+  for (const Feature& feature : element_.features) {
+    if (feature.faces.empty()) {
+      add("CAT-10", std::string(to_string(feature.kind)) + " " + feature.name +
+                        " has no faces: nothing tells where it is");
+      continue;
+    }
+    if (!faces_in_range_) continue;
+    const bool is_all = std::ranges::all_of(
+        feature.faces, [&](std::uint32_t face) { return is_of(feature, solid_.faces[face]); });
+    if (!is_all) {
+      add("CAT-10", std::string(to_string(feature.kind)) + " " + feature.name +
+                        " has a face that lies elsewhere");
+    }
+  }
+}
+
+/// Between magnesium foam and gold: a density in g/cm3 or in t/mm3 is none.
+void ElementLint::check_density() {
+  constexpr double kLeast_kg_per_m3 = 100.0;
+  constexpr double kMost_kg_per_m3 = 25000.0;
+  const double density = element_.density_kg_per_m3;
+  if (density == 0.0 || (density >= kLeast_kg_per_m3 && density <= kMost_kg_per_m3)) return;
+  add("CAT-05",
+      "its density is " + number(density) + " kg/m3, expected 100 to 25000: is the unit right?");
+}
+
 void ElementLint::check_unit() {
   if (element_.unit_in_file.empty()) add("CAT-05", "its file states no unit of length");
   const double diagonal_mm = 2.0 * element_.obb.half_extents_mm.norm();
@@ -222,6 +328,7 @@ void ElementLint::check_origin() {
     add("CAT-06", what, LintFinding::Severity::Warning);
   };
   if (element_.source.empty()) warn("its source is not recorded");
+  if (element_.sha256.empty()) warn("its revision, the hash of its file, is not recorded");
   if (element_.licence.empty()) warn("its licence is not recorded");
 }
 

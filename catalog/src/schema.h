@@ -17,7 +17,8 @@ inline constexpr std::int32_t kCatalogApplicationId = 0x44574C43;
 ///  3: `element_design`, `feature_design`
 ///  4: `bolt_circle`, `bolt_circle_hole`
 ///  5: `instance`
-inline constexpr std::int32_t kCatalogVersion = 5;
+///  6: `blob`, `element_blob`
+inline constexpr std::int32_t kCatalogVersion = 6;
 
 /// The first version that keeps the shape of slots.
 inline constexpr std::int32_t kSlotVersion = 2;
@@ -31,6 +32,9 @@ inline constexpr std::int32_t kBoltCircleVersion = 4;
 /// The first version that keeps where assemblies have their elements.
 inline constexpr std::int32_t kInstanceVersion = 5;
 
+/// The first version that keeps equal content once.
+inline constexpr std::int32_t kSharedContentVersion = 6;
+
 struct SchemaTable {
   const char* name = nullptr;
   const char* sql = nullptr;  ///< as sqlite_schema keeps it, to the letter
@@ -39,7 +43,7 @@ struct SchemaTable {
 
 /// Every table that a catalogue of this version has. They are columns rather than documents so that
 /// rules can be written over them in SQL.
-inline constexpr std::array<SchemaTable, 11> kCatalogTables{{
+inline constexpr std::array<SchemaTable, 13> kCatalogTables{{
     {"source", R"(CREATE TABLE source (
   id INTEGER PRIMARY KEY,
   path TEXT NOT NULL UNIQUE,
@@ -214,6 +218,24 @@ inline constexpr std::array<SchemaTable, 11> kCatalogTables{{
   bytes BLOB NOT NULL,
   UNIQUE (element_id, kind)
 ) STRICT)"},
+    {"blob",
+     R"(CREATE TABLE blob (
+  id INTEGER PRIMARY KEY,
+  checksum INTEGER NOT NULL,
+  repeat INTEGER NOT NULL,
+  bytes BLOB NOT NULL,
+  UNIQUE (checksum, repeat)
+) STRICT)",
+     kSharedContentVersion},
+    {"element_blob",
+     R"(CREATE TABLE element_blob (
+  element_id INTEGER NOT NULL REFERENCES element (id) ON DELETE CASCADE,
+  kind TEXT NOT NULL CHECK (kind IN ('facets', 'brep')),
+  blob_id INTEGER NOT NULL REFERENCES blob (id),
+  PRIMARY KEY (element_id, kind),
+  UNIQUE (blob_id, element_id, kind)
+) STRICT, WITHOUT ROWID)",
+     kSharedContentVersion},
 }};
 
 }  // namespace dowel

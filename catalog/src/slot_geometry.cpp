@@ -124,7 +124,7 @@ bool is_void_between(const FacetedSolid& solid, std::uint32_t lump, const Eigen:
   const double length_mm = (to - from).norm();
   if (length_mm <= kSameFeature_mm) return true;
   const Axis axis{from, (to - from) / length_mm};
-  const std::vector<VoidStretch> stretches = void_along(solid, lump, axis, offset_mm);
+  const std::vector<VoidStretch> stretches = VoidFinder(solid).along(lump, axis, offset_mm);
   return std::ranges::any_of(stretches, [&](const VoidStretch& stretch) {
     return stretch.low_mm <= kSameFeature_mm && stretch.high_mm >= length_mm - kSameFeature_mm;
   });

@@ -27,6 +27,7 @@ ElementRecord sound_record(const std::string& name, FacetedSolid solid) {
   element.source = name + ".step";
   element.unit_in_file = "mm";
   element.licence = "CC0-1.0";
+  element.sha256 = std::string(64, 'a');
   element.solids = solid.solid_count;
   element.volume_mm3 = mass.volume_mm3;
   element.surface_mm2 = mass.surface_mm2;
@@ -107,6 +108,12 @@ TEST_CASE("CAT-01 finds numbers that do not agree with each other", "[rule]") {
   SECTION("segments deeper than the hole") {
     first_hole(record).depth_mm = 5.0;
   }
+  SECTION("a thread that is wider than its bore") {
+    first_hole(record).thread = "M16";
+  }
+  SECTION("a shaft's fit on a hole") {
+    first_hole(record).fit = "g6";
+  }
   SECTION("segments that overlap") {
     first_hole(record).segments.push_back(first_hole(record).segments.back());
   }
@@ -155,6 +162,10 @@ TEST_CASE("CAT-04 finds hole triangles without a hole and holes without their wa
     };
     std::erase_if(record.element.features, is_hole);
   }
+  SECTION("planes that are tagged as something else") {
+    record.element.triangles.plane -= 2;
+    record.element.triangles.other += 2;
+  }
   SECTION("a hole that is not where its wall is") {
     first_hole(record).origin.x() += 0.5;
   }
@@ -178,14 +189,76 @@ TEST_CASE("CAT-05 finds units that cannot be right", "[rule]") {
   ElementRecord record = plate_record();
   record.element.unit_in_file.clear();
   CHECK(rules_of(record) == Rules{"CAT-05"});
+  record = plate_record();
+  record.element.density_kg_per_m3 = 7850.0;
+  CHECK(rules_of(record).empty());
+  record.element.density_kg_per_m3 = GENERATE(7.85, 7.85e-9, 7.85e6);
+  CHECK(rules_of(record) == Rules{"CAT-05"});
 }
 
-TEST_CASE("CAT-06 warns where licence or source are missing", "[rule]") {
+TEST_CASE("CAT-01 takes threads and fits that their features can have", "[rule]") {
+  ElementRecord record = plate_record();  // bores of 12 mm
+  first_hole(record).thread = GENERATE("M12", "M14", "M13");
+  first_hole(record).fit = GENERATE("H7", "F7", "");
+  CHECK(rules_of(record).empty());
+}
+
+TEST_CASE("CAT-09 warns of a box that is larger than it need be", "[rule]") {
+  ElementRecord record = plate_record();
+  SECTION("by little") {
+    record.element.obb.half_extents_mm *= 1.0003;
+    CHECK(rules_of(record).empty());
+  }
+  SECTION("by a tenth of a millimetre") {
+    record.element.obb.half_extents_mm.z() += 0.1;
+    CHECK(rules_of(record) == Rules{"CAT-09"});
+  }
+  SECTION("for it stands askew") {
+    record.element.obb.axes = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    record.element.obb.half_extents_mm += Eigen::Vector3d(5.0, 6.0, 0.0);
+    CHECK(rules_of(record) == Rules{"CAT-09"});
+  }
+}
+
+TEST_CASE("CAT-10 finds features that their faces are not of", "[rule]") {
+  ElementRecord plate = plate_record();
+  ElementRecord pin = sound_record("pin", dowel::testing::stepped_pin({{10, 8}, {6, 20}}, 32));
+  const auto feature_of = [](ElementRecord& record, dowel::FeatureKind kind) -> dowel::Feature& {
+    return *std::ranges::find(record.element.features, kind, &dowel::Feature::kind);
+  };
+  dowel::Feature& face = feature_of(plate, dowel::FeatureKind::Face);
+  dowel::Feature& shaft = feature_of(pin, dowel::FeatureKind::Shaft);
+  REQUIRE(rules_of(plate).empty());
+  REQUIRE(rules_of(pin).empty());
+  SECTION("a planar face at another height") {
+    face.origin += 0.5 * face.direction;
+    CHECK(rules_of(plate) == Rules{"CAT-10"});
+  }
+  SECTION("a planar face that looks the other way") {
+    face.direction = -face.direction;
+    CHECK(rules_of(plate) == Rules{"CAT-10"});
+  }
+  SECTION("a shaft beside its wall") {
+    shaft.origin.x() += 0.1;
+    CHECK(rules_of(pin) == Rules{"CAT-10"});
+  }
+  SECTION("a shaft of another diameter") {
+    shaft.diameter_mm += 0.01;
+    CHECK(rules_of(pin) == Rules{"CAT-10"});
+  }
+  SECTION("a shaft without faces") {
+    shaft.faces.clear();
+    CHECK(rules_of(pin) == Rules{"CAT-10"});
+  }
+}
+
+TEST_CASE("CAT-06 warns where licence, source or revision are missing", "[rule]") {
   ElementRecord record = plate_record();
   record.element.licence.clear();
   record.element.source.clear();
+  record.element.sha256.clear();
   const auto findings = lint(record.element, record.solid);
-  REQUIRE(findings.size() == 2);
+  REQUIRE(findings.size() == 3);
   for (const LintFinding& finding : findings) {
     CHECK(finding.rule == "CAT-06");
     CHECK(finding.severity == LintFinding::Severity::Warning);
@@ -202,7 +275,8 @@ std::vector<LintFinding> findings_of(const std::vector<ElementRecord>& records,
   {
     dowel::Catalog catalog(file, dowel::Catalog::Access::ReadWrite);
     for (const ElementRecord& record : records) {
-      catalog.put({record.element.source, "", "", "ok", "", {}}, std::vector{record});
+      catalog.put({record.element.source, record.element.sha256, "", "ok", "", {}},
+                  std::vector{record});
     }
   }
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec(sql);
@@ -227,11 +301,14 @@ TEST_CASE("CAT-08 finds what cannot be read and goes on", "[rule][fault]") {
   const auto a = sound_record("a", dowel::testing::box({80.0, 40.0, 20.0}));
   auto b = sound_record("b", dowel::testing::box({60.0, 40.0, 20.0}));
   b.element.unit_in_file.clear();
-  const std::string of_a = " WHERE element_id = (SELECT id FROM element WHERE name = 'a')";
-  const std::string damage =
-      GENERATE("UPDATE content SET bytes = x'00'", "UPDATE content SET checksum = 1",
-               "DELETE FROM content", "UPDATE feature SET direction_x = 7.0");
-  const auto findings = findings_of({a, b}, damage + of_a);
+  const std::string of_a = "element_id = (SELECT id FROM element WHERE name = 'a')";
+  const std::string facets_of_a =
+      "id = (SELECT blob_id FROM element_blob WHERE kind = 'facets' AND " + of_a + ")";
+  const std::string damage = GENERATE_COPY("UPDATE blob SET bytes = x'00' WHERE " + facets_of_a,
+                                           "UPDATE blob SET checksum = 1 WHERE " + facets_of_a,
+                                           "DELETE FROM element_blob WHERE " + of_a,
+                                           "UPDATE feature SET direction_x = 7.0 WHERE " + of_a);
+  const auto findings = findings_of({a, b}, damage);
   REQUIRE(findings.size() == 2);
   CHECK(findings[0].element == "a");
   CHECK(findings[0].rule == "CAT-08");

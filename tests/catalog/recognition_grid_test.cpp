@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -106,6 +107,33 @@ TEST_CASE("six holes on a circle are no grid") {
     drilled.push_back({60.0 * std::cos(a), 60.0 * std::sin(a), 5.0});
   }
   CHECK(names(holes_of(plate(drilled))) == "h1 h2 h3 h4 h5 h6");
+}
+
+TEST_CASE("a hole in the middle of a bolt circle of equal holes makes it no grid") {
+  const int count = GENERATE(4, 5, 6, 8, 12);
+  const double turned_rad = GENERATE(0.0, 0.5, std::numbers::pi / 6.0);
+  CAPTURE(count, turned_rad);
+  std::vector<testing::DrilledHole> drilled{{0.0, 0.0, 5.0}};
+  for (int i = 0; i < count; ++i) {
+    const double a = turned_rad + 2.0 * std::numbers::pi / count * i;
+    drilled.push_back({60.0 * std::cos(a), 60.0 * std::sin(a), 5.0});
+  }
+  const std::vector<Feature> holes = holes_of(plate(drilled));
+  const std::vector<BoltCircle> circles = find_bolt_circles(holes);
+  REQUIRE(circles.size() == 1);
+  CHECK(circles[0].holes.size() == static_cast<std::size_t>(count));
+  CHECK(circles[0].diameter_mm == Approx(120.0));
+  for (const Feature& hole : holes) CHECK(hole.name.front() == 'h');
+}
+
+TEST_CASE("a chequered grid of seven holes is one, though it is a hexagon drawn out") {
+  std::vector<testing::DrilledHole> drilled;
+  for (const auto& [x, y] :
+       {std::pair(-40, 40), std::pair(40, 40), std::pair(-80, 0), std::pair(0, 0), std::pair(80, 0),
+        std::pair(-40, -40), std::pair(40, -40)}) {
+    drilled.push_back({static_cast<double>(x), static_cast<double>(y), 6.0});
+  }
+  CHECK(names(holes_of(plate(drilled))) == "A2 A4 B1 B3 B5 C2 C4");
 }
 
 TEST_CASE("a bolt circle tells its pitch circle, its count and its holes, from the right around") {

@@ -13,7 +13,7 @@ namespace dowel {
 /// Something wrong with the data of one element.
 struct LintFinding {
   enum class Severity { Warning, Error };
-  std::string rule;  ///< "CAT-01" … "CAT-08", see catalog/README.md
+  std::string rule;  ///< "CAT-01" … "CAT-10", see catalog/README.md
   Severity severity = Severity::Error;
   std::string element;  ///< its name
   std::string message;  ///< one sentence with the numbers
@@ -24,7 +24,7 @@ struct LintFinding {
 /// "warning" or "error".
 std::string_view to_string(LintFinding::Severity severity);
 
-/// What is wrong with one element by itself (CAT-01 to CAT-06), by rule.
+/// What is wrong with one element by itself (CAT-01 to CAT-06, CAT-09, CAT-10), by rule.
 /// Expects: `solid` as from_blob returns it (its indices are in range).
 std::vector<LintFinding> lint(const Element& element, const FacetedSolid& solid);
 
