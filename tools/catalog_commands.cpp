@@ -1,13 +1,12 @@
-// dowel catalog build, list, show, search, lint.
+// dowel catalog list, show, search, lint.
+
+#include "catalog_commands.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -16,7 +15,6 @@
 #include "dowel/catalog/catalog.h"
 #include "dowel/catalog/lint.h"
 #include "dowel/catalog/search.h"
-#include "dowel/io/catalog_build.h"
 #include "dowel/kernel/error.h"
 #include "element_json.h"
 #include "json.h"
@@ -29,7 +27,6 @@ namespace {
 using Align = Table::Align;
 
 constexpr const char* kRed = "31";
-constexpr const char* kGreen = "32";
 constexpr const char* kYellow = "33";
 
 Catalog open(const std::string& file) {
@@ -51,141 +48,6 @@ std::string point_text(const Eigen::Vector3d& point) {
     text += (text.empty() ? "" : ", ") + short_number(rounded);
   }
   return text;
-}
-
-// ---- build -------------------------------------------------------------------------------------
-
-struct BuildArguments {
-  std::vector<std::string> paths;
-  std::string output;
-  unsigned jobs = std::max(1U, std::thread::hardware_concurrency());
-  bool force = false;
-  std::optional<std::string> licence;
-  std::optional<std::string> assemblies;
-  bool json = false;
-};
-
-/// Of one file, as text.
-constexpr std::size_t kShownWarnings = 3;
-
-bool has_elements(const BuiltFile& file) {
-  return file.status == BuildStatus::Ok || file.status == BuildStatus::Unchanged;
-}
-
-Json to_json(const BuiltFile& file) {
-  Json json;
-  json["file"] = file.file;
-  json["status"] = to_string(file.status);
-  if (has_elements(file)) {
-    json["elements"] = file.elements;
-  } else {
-    json["reason"] = file.reason;
-  }
-  if (!file.project.empty()) {
-    json["project"] = file.project;
-    json["instances"] = file.instances;
-  }
-  if (!file.warnings.empty()) json["warnings"] = file.warnings;
-  json["seconds"] = file.seconds;
-  return json;
-}
-
-std::string to_text(const BuiltFile& file) {
-  const char* const colour = file.status == BuildStatus::Failed  ? kRed
-                             : file.status == BuildStatus::Empty ? kYellow
-                                                                 : kGreen;
-  std::string status(to_string(file.status));
-  status.resize(std::string_view("unchanged").size(), ' ');
-  std::string what = file.reason;
-  if (has_elements(file)) {
-    what.clear();
-    for (const std::string& element : file.elements) what += (what.empty() ? "" : ", ") + element;
-  }
-  std::string text =
-      coloured(status, colour) + "  " + printable(file.file) + ": " + printable(what);
-  if (!file.project.empty()) {
-    text += "\n           " + counted(file.instances, "instance") + " in project " +
-            printable(file.project);
-  }
-  const std::size_t shown = std::min(file.warnings.size(), kShownWarnings);
-  for (std::size_t i = 0; i < shown; ++i) {
-    text += "\n           " + coloured("warning", kYellow) + " " + printable(file.warnings[i]);
-  }
-  if (shown < file.warnings.size()) {
-    text += "\n           and " + counted(file.warnings.size() - shown, "more warning") +
-            "; --json tells all";
-  }
-  return text;
-}
-
-std::size_t count(const std::vector<BuiltFile>& files, BuildStatus status) {
-  return static_cast<std::size_t>(std::ranges::count(files, status, &BuiltFile::status));
-}
-
-std::string build_summary(const std::vector<BuiltFile>& files, double seconds) {
-  std::size_t elements = 0;
-  for (const BuiltFile& file : files) elements += file.elements.size();
-  std::string text = counted(files.size(), "file") + ", " + counted(elements, "element") + ": ";
-  for (const BuildStatus status : {BuildStatus::Ok, BuildStatus::Unchanged, BuildStatus::Empty}) {
-    text += std::to_string(count(files, status)) + " " + std::string(to_string(status)) + ", ";
-  }
-  return text + std::to_string(count(files, BuildStatus::Failed)) + " failed; " +
-         duration_text(seconds);
-}
-
-int run_build(const BuildArguments& arguments) {
-  BuildOptions options;
-  options.jobs = arguments.jobs;
-  options.force = arguments.force;
-  options.licence = arguments.licence;
-  if (arguments.assemblies) options.assemblies = *arguments.assemblies;
-  const std::vector<std::filesystem::path> paths(arguments.paths.begin(), arguments.paths.end());
-
-  const auto start = std::chrono::steady_clock::now();
-  Progress progress("files");
-  const auto report = [&](const BuiltFile& file, std::size_t done, std::size_t total) {
-    if (arguments.json) {
-      progress.clear();
-      print_line(to_line(to_json(file)));
-    } else if (file.status != BuildStatus::Unchanged) {
-      progress.clear();
-      print_line(to_text(file));
-    }
-    progress.update(done, total, file.file);
-    return true;
-  };
-  const std::vector<BuiltFile> files = build_catalog(paths, arguments.output, options, report);
-  progress.clear();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  if (!arguments.json) print_line(build_summary(files, taken.count()));
-
-  const std::size_t failed = count(files, BuildStatus::Failed);
-  if (failed == 0) return kDone;
-  return failed == files.size() ? kBadInput : kFindings;
-}
-
-void add_build(CLI::App& catalog, int& exit_code) {
-  const auto arguments = std::make_shared<BuildArguments>();
-  CLI::App* const command = catalog.add_subcommand(
-      "build",
-      "Adds or refreshes the elements of STEP and mesh files. Unchanged files are skipped.");
-  command->add_option("PATH", arguments->paths, "files, and folders with all files in them")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "the catalogue; made where it is missing")
-      ->required()
-      ->type_name("CATALOG.db");
-  command->add_option("--jobs", arguments->jobs, "files read at a time")
-      ->check(CLI::Range(1U, 256U))
-      ->capture_default_str();
-  command->add_flag("--force", arguments->force, "reads unchanged files, too");
-  command->add_option("--licence", arguments->licence, "recorded with the elements")
-      ->type_name("TEXT");
-  command
-      ->add_option("--assemblies", arguments->assemblies,
-                   "folder to write a project to for each file that places more than one part")
-      ->type_name("FOLDER");
-  command->add_flag("--json", arguments->json, "one line of JSON a file");
-  command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });
 }
 
 // ---- list and search ---------------------------------------------------------------------------
@@ -471,11 +333,12 @@ void add_catalog_commands(CLI::App& app, int& exit_code) {
   CLI::App* const catalog =
       app.add_subcommand("catalog", "Makes and reads catalogues of elements.");
   catalog->require_subcommand(1);
-  add_build(*catalog, exit_code);
+  add_build_command(*catalog, exit_code);
   add_list(*catalog);
   add_show(*catalog);
   add_search(*catalog);
   add_lint(*catalog, exit_code);
+  add_sheet_command(*catalog);
 }
 
 }  // namespace dowel::tools

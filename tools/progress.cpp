@@ -50,16 +50,18 @@ Progress::~Progress() {
   clear();
 }
 
-void Progress::update(std::size_t done, std::size_t total, std::string_view label) {
+void Progress::update(std::size_t done, std::size_t total, std::string_view label,
+                      std::size_t skipped) {
   if (!is_shown_ || total == 0) return;
   constexpr std::size_t kCells = 24;
   const std::size_t filled = kCells * done / total;
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-  const double rate = static_cast<double>(done) / std::max(taken.count(), 1e-3);
+  const std::size_t counted = done - std::min(skipped, done);
+  const double rate = static_cast<double>(counted) / std::max(taken.count(), 1e-3);
 
   std::string line = "[" + std::string(filled, '#') + std::string(kCells - filled, '.') + "] " +
                      std::to_string(done) + "/" + std::to_string(total) + " " + unit_;
-  if (done > 0) {
+  if (counted > 0) {
     char text[32];
     std::snprintf(text, sizeof text, ", %.1f/s, ", rate);
     line += text + duration_text(static_cast<double>(total - done) / rate) + " left";

@@ -25,8 +25,9 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Redraws the bar: `done` of `total` are done, the last of them is called `label`.
-  void update(std::size_t done, std::size_t total, std::string_view label);
+  /// Redraws the bar: `done` of `total` are done, the last of them is called `label`. `skipped` of
+  /// those done cost nothing: the rate leaves them out.
+  void update(std::size_t done, std::size_t total, std::string_view label, std::size_t skipped = 0);
 
   /// Takes the bar away, so that other lines can be printed; the next update brings it back.
   void clear();

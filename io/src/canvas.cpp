@@ -189,6 +189,11 @@ void Canvas::draw_outlines(std::span<const std::uint8_t> pen_of_owner) {
   }
 }
 
+double Canvas::depth_at(double x, double y) const {
+  if (!(x >= 0.0 && x < width_ && y >= top_ && y < bottom_)) return kNothing;
+  return at(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y))).depth;
+}
+
 std::vector<std::uint8_t> Canvas::pixels(std::span<const Linear> pens) const {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(samples_.size() / kSamples / kSamples * 3);

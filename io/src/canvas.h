@@ -48,6 +48,9 @@ class Canvas {
   /// `pen_of_owner[owner]`.
   void draw_outlines(std::span<const std::uint8_t> pen_of_owner);
 
+  /// Depth of the nearest facet there; infinite where there is none or beyond the band. In samples.
+  double depth_at(double x, double y) const;
+
   /// sRGB bytes of the band's pixels, three a pixel, row by row. `pens`: colours of the lines.
   std::vector<std::uint8_t> pixels(std::span<const Linear> pens) const;
 

@@ -21,7 +21,7 @@ namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 4;
+constexpr int kPipelineVersion = 5;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {
@@ -152,7 +152,11 @@ class Build {
   Build(Catalog& catalog, const BuildOptions& options, const BuildCallback& on_file,
         std::vector<Input>&& inputs)
       : catalog_(catalog), options_(options), on_file_(on_file) {
-    for (Input& input : inputs) jobs_.push_back(prepare(std::move(input)));
+    total_ = inputs.size();
+    for (Input& input : inputs) {
+      if (is_stopped()) break;
+      jobs_.push_back(prepare(std::move(input)));
+    }
   }
 
   std::vector<BuiltFile> run() && {
@@ -165,7 +169,7 @@ class Build {
     }
     // What goes wrong here must not pass through the reader, which has children to look after.
     std::exception_ptr failure;
-    import_files(files, options_.import, options_.jobs, [&](std::size_t i, ImportResult&& result) {
+    const auto on_done = [&](std::size_t i, ImportResult&& result) {
       try {
         return report_until(job_of[i]) && store(jobs_[job_of[i]], std::move(result)) &&
                report_until(job_of[i] + 1);
@@ -173,13 +177,21 @@ class Build {
         failure = std::current_exception();
         return false;
       }
-    });
+    };
+    if (!is_stopped()) {
+      import_files(files, options_.import, options_.jobs, on_done, [this] { return is_stopped(); });
+    }
     if (failure) std::rethrow_exception(failure);
-    if (!stopped_) report_until(jobs_.size());
+    if (!is_stopped()) report_until(jobs_.size());
     return std::move(report_);
   }
 
  private:
+  /// By the callback, or from outside.
+  bool is_stopped() {
+    stopped_ = stopped_ || (options_.stop && options_.stop());
+    return stopped_;
+  }
   Job prepare(Input&& input);
   const LibraryManifest* manifest_of(const std::filesystem::path& file);
   bool is_unchanged(const Job& job, const SourceRecord& known) const;
@@ -193,6 +205,7 @@ class Build {
   std::map<std::filesystem::path, LibraryManifest> manifests_;  ///< by their files; jobs point here
   std::vector<Job> jobs_;
   std::vector<BuiltFile> report_;
+  std::size_t total_ = 0;
   bool stopped_ = false;
 };
 
@@ -275,11 +288,13 @@ bool Build::store(Job& job, ImportResult&& result) {
     }
     try {
       for (ImportedPart& part : result.parts) {
+        job.built.faces += part.solid.faces.size();
         records.push_back(make_record(std::move(part), job.source, job.licence, job.design));
       }
     } catch (const std::exception& error) {
       // A part that recognition cannot take costs its file, not the build.
       records.clear();
+      job.built.faces = 0;
       job.built.status = BuildStatus::Failed;
       job.built.reason = error.what();
     }
@@ -329,7 +344,7 @@ bool Build::report_until(std::size_t end) {
   while (!stopped_ && report_.size() < end) {
     make_project(jobs_[report_.size()]);
     report_.push_back(std::move(jobs_[report_.size()].built));
-    stopped_ = on_file_ && !on_file_(report_.back(), report_.size(), jobs_.size());
+    stopped_ = on_file_ && !on_file_(report_.back(), report_.size(), total_);
   }
   return !stopped_;
 }

@@ -288,22 +288,23 @@ std::vector<FacetSums> sum_facets(const Piece& piece) {
   return sums;
 }
 
-void set_surface(const TopoDS_Face& face, const Vector3d& inside, double deflection_mm,
+/// False where the face's boundary lies off the surface that it claims.
+bool set_surface(const TopoDS_Face& face, const Vector3d& inside, double deflection_mm,
                  double moved_mm, Face& result) {
   TopLoc_Location location;
   const auto facets = BRep_Tool::Triangulation(face, location);
-  if (facets.IsNull()) return;
+  if (facets.IsNull()) return true;
   const gp_Trsf placement = location.Transformation();
   result.surface = exact_surface(face, inside);
   // Damaged files have boundaries far off the surface that they claim.
-  if (!std::holds_alternative<OtherSurface>(result.surface) &&
-      !(corner_error_mm(*facets, placement, result.surface) <= deflection_mm)) {
-    result.surface = OtherSurface{};
-  }
+  const bool is_misplaced = !std::holds_alternative<OtherSurface>(result.surface) &&
+                            !(corner_error_mm(*facets, placement, result.surface) <= deflection_mm);
+  if (is_misplaced) result.surface = OtherSurface{};
   result.facet_error_mm = facet_error_mm(face, *facets, placement, result.surface) + moved_mm;
   if (is_plane(result.surface) && result.facet_error_mm < kMinTolerance_mm) {
     result.facet_error_mm = 0.0;
   }
+  return !is_misplaced;
 }
 
 double exact_area_mm2(const TopoDS_Face& face, double facet_area_mm2) {
@@ -317,14 +318,18 @@ double exact_area_mm2(const TopoDS_Face& face, double facet_area_mm2) {
   return is_plausible ? area_mm2 : facet_area_mm2;
 }
 
-/// Exact surfaces, their errors, sides and areas for the faces of one solid.
-void describe_faces(Piece& piece, double deflection_mm) {
+/// Exact surfaces, their errors, sides and areas for the faces of one solid. Returns how many of
+/// them do not lie on the surface that they claim.
+std::size_t describe_faces(Piece& piece, double deflection_mm) {
   std::vector<Vector3d> inside(piece.faces.size(), Vector3d::Zero());
   for (std::uint32_t t = 0; t < piece.facets.triangles.size(); ++t) {
     inside[piece.facets.face_of[t]] = centroid(piece, t);
   }
+  std::size_t misplaced = 0;
   for (std::size_t f = 0; f < piece.faces.size(); ++f) {
-    set_surface(piece.faces[f], inside[f], deflection_mm, piece.moved_mm[f], piece.facets.faces[f]);
+    const bool is_placed = set_surface(piece.faces[f], inside[f], deflection_mm, piece.moved_mm[f],
+                                       piece.facets.faces[f]);
+    if (!is_placed) ++misplaced;
   }
   const std::vector<FacetSums> sums = sum_facets(piece);
   for (std::size_t f = 0; f < piece.faces.size(); ++f) {
@@ -336,6 +341,7 @@ void describe_faces(Piece& piece, double deflection_mm) {
       face.reversed = sums[f].agreement_mm2 < 0.0;
     }
   }
+  return misplaced;
 }
 
 /// The solid with its shells turned as its facets were.
@@ -418,7 +424,7 @@ FacetedShape facet(const TopoDS_Shape& shape, const FacetOptions& options) {
     FacetedShape result;
     std::vector<TopoDS_Solid> solids;
     for (Piece& piece : attempt.pieces) {
-      describe_faces(piece, linear_mm);
+      result.misplaced_faces += describe_faces(piece, linear_mm);
       append(piece, static_cast<std::uint32_t>(solids.size()), result.solid);
       solids.push_back(turned_solid(piece));
     }

@@ -19,6 +19,9 @@ struct FacetOptions {
 struct FacetedShape {
   FacetedSolid solid;  ///< `find_defect` returns nothing
   TopoDS_Shape shape;  ///< the solids that it stands for, outward, without facets
+  /// Faces whose boundary lies off the surface that they claim by more than the deflection. They
+  /// stand as free-form ones: nobody can tell which of the two was meant.
+  std::size_t misplaced_faces = 0;
 };
 
 /// A thousandth of the bounding box's diagonal, within [kMinDeflection_mm, kMaxDeflection_mm].

@@ -80,14 +80,25 @@ void set_mass(const TopoDS_Shape& shape, ImportedPart& part) {
   part.center_of_mass = is_plausible ? to_eigen(properties.CentreOfMass()) : facets.center_of_mass;
 }
 
-ImportedPart import_part(const StepPart& from, const ImportOptions& options,
-                         const StageReport& report) {
+/// What a part warns of: each face that is not where it should be says that the file is damaged.
+std::vector<std::string> part_warnings(const FacetedShape& facets, const std::string& name) {
+  if (facets.misplaced_faces == 0) return {};
+  return {"part " + name + ": " + std::to_string(facets.misplaced_faces) +
+          (facets.misplaced_faces == 1 ? " face has its" : " faces have their") +
+          " boundary off the surface that the file gives"};
+}
+
+ImportedPart import_part(const StepPart& from, const std::string& name,
+                         const ImportOptions& options, const StageReport& report,
+                         std::vector<std::string>& warnings) {
   report(WorkerStage::Mesh);
   const FacetedShape facets = facet(
       from.shape, {options.deflection_mm, options.angular_deflection_rad, options.max_triangles});
   report(WorkerStage::Features);
   ImportedPart part;
   part.solid = facets.solid;
+  part.name = name;
+  for (std::string& warning : part_warnings(facets, name)) warnings.push_back(std::move(warning));
   part.colour = from.colour;
   guarded("the integration of its volume failed", [&] {
     set_mass(facets.shape, part);
@@ -111,14 +122,14 @@ ImportResult import_step(const std::filesystem::path& file, const ImportOptions&
   const std::vector<std::string> names = part_names(found, clean_text(file.stem().string()));
   for (std::size_t i = 0; i < content.parts.size(); ++i) {
     try {
-      result.parts.push_back(import_part(content.parts[i], options, report));
+      result.parts.push_back(
+          import_part(content.parts[i], names[i], options, report, result.warnings));
     } catch (const Error& error) {
       ImportResult failure = failed(
           content.parts.size() == 1 ? error.what() : "part " + names[i] + ": " + error.what());
       failure.warnings = std::move(result.warnings);
       return failure;
     }
-    result.parts.back().name = names[i];
     result.parts.back().unit_in_file = content.unit;
   }
   for (const StepInstance& instance : content.instances) {
@@ -193,7 +204,8 @@ ImportResult import_file(const std::filesystem::path& file, const ImportOptions&
 }
 
 void import_files(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
-                  unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done) {
+                  unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done,
+                  const std::function<bool()>& stop) {
   DOWEL_EXPECTS(options.deflection_mm >= 0.0 && options.angular_deflection_rad > 0.0);
   DOWEL_EXPECTS(options.max_triangles > 0);
   run_workers(
@@ -203,7 +215,8 @@ void import_files(const std::vector<std::filesystem::path>& files, const ImportO
       },
       [&](std::size_t i, WorkerOutcome&& outcome) {
         return on_done(i, from_outcome(std::move(outcome)));
-      });
+      },
+      stop);
 }
 
 }  // namespace dowel

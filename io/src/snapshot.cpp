@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <string>
 
 #include <Eigen/Geometry>
-#include <png.h>
 
 #include "canvas.h"
 #include "display_colour.h"
 #include "dowel/io/file.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/check.h"
-#include "dowel/kernel/error.h"
+#include "png_file.h"
 #include "shaded_mesh.h"
 
 namespace dowel {
@@ -178,29 +176,6 @@ class Snapshot {
   Vector3d shift_ = Vector3d::Zero();
 };
 
-std::vector<std::byte> encode_png(const std::vector<std::uint8_t>& pixels,
-                                  const SnapshotOptions& options) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = options.width_px;
-  image.height = options.height_px;
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = 0;
-  std::vector<std::byte> bytes;
-  bool done = png_image_write_get_memory_size(image, size, 0, pixels.data(), 0, nullptr) != 0;
-  if (done) {
-    bytes.resize(size);
-    done =
-        png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) != 0;
-  }
-  if (!done) {
-    throw Error(ErrorCode::InvalidInput,
-                std::string("the picture cannot be written as PNG: ") + std::begin(image.message));
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
 }  // namespace
 
 std::vector<std::byte> to_png(const DisplayScene& scene, const SnapshotOptions& options) {
@@ -209,7 +184,7 @@ std::vector<std::byte> to_png(const DisplayScene& scene, const SnapshotOptions& 
   DOWEL_EXPECTS(std::ranges::all_of(scene.instances, [&](const DisplayInstance& instance) {
     return instance.mesh < scene.meshes.size() && scene.meshes[instance.mesh].solid != nullptr;
   }));
-  return encode_png(Snapshot(scene, options).draw(), options);
+  return encode_png(Snapshot(scene, options).draw(), options.width_px, options.height_px);
 }
 
 void write_png(const std::filesystem::path& file, const DisplayScene& scene,

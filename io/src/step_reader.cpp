@@ -45,6 +45,7 @@
 #include "dowel/kernel/tolerance.h"
 #include "occt.h"
 #include "part_names.h"
+#include "step_definitions.h"
 
 namespace dowel {
 namespace {
@@ -106,6 +107,9 @@ std::string joined(const std::vector<std::string>& items, const std::string& sep
   return text;
 }
 
+/// An assembly that is spread over files has one of these for each of the others.
+constexpr std::string_view kFileReference = "=DOCUMENT_FILE(";
+
 /// What a file says it holds that the transfer gives no shape for.
 std::string untransferred(std::string_view text) {
   std::vector<std::string> kinds;
@@ -118,6 +122,7 @@ std::string untransferred(std::string_view text) {
   look_for("=TRIANGULATED_FACE(", "triangulated face");
   look_for("=COMPLEX_TRIANGULATED_FACE(", "triangulated face");
   look_for("=GEOMETRIC_CURVE_SET(", "curve set");
+  look_for(kFileReference, "external reference");
   return joined(kinds, ", ");
 }
 
@@ -423,8 +428,21 @@ StepContent read(const std::filesystem::path& file, const std::string& text, boo
   }
   if (transferred && !whole_file) collector.collect(content);
   keep_solids(content);
-  if (!content.parts.empty() || !content.leftovers.empty()) return content;
-  content.leftovers = untransferred(without_spaces(text));
+  const std::string compact = without_spaces(text);
+  if (!content.parts.empty() || !content.leftovers.empty()) {
+    const std::size_t references = count_of(compact, kFileReference);
+    if (references > 0) {
+      content.warnings.push_back("has " + counted(references, "external reference") +
+                                 ": parts in other files may be missing");
+    }
+    const std::size_t unused = unused_definitions(compact);
+    if (unused > 0) {
+      content.warnings.push_back(std::to_string(unused) +
+                                 " placements or shapes of parts are used by nothing");
+    }
+    return content;
+  }
+  content.leftovers = untransferred(compact);
   if (content.leftovers.empty() && !content.warnings.empty()) {
     fail_to_read("nothing in it can be transferred", content.warnings);
   }

@@ -130,6 +130,7 @@ void run_task(std::size_t index, const WorkerTask& task) {
 [[noreturn]] void run_child(int pipe, pid_t parent, std::size_t index, const WorkerLimits& limits,
                             const WorkerTask& task) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);  // a terminal's Ctrl-C would end the children before the caller has a say
   reset_signals();
   if (::getppid() != parent || !isolate_descriptors(pipe)) ::_exit(1);
   limit_resources(limits);
@@ -283,22 +284,22 @@ WorkerOutcome Child::time_out() {
 }
 
 /// Time until the first deadline for `poll`, rounded up so that it does not spin before it.
-int poll_timeout_ms(const std::vector<std::unique_ptr<Child>>& children) {
+int poll_timeout_ms(const std::vector<std::unique_ptr<Child>>& children, bool can_stop) {
   Clock::time_point first = Clock::time_point::max();
   for (const auto& child : children) first = std::min(first, child->deadline());
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(first - Clock::now()).count();
-  constexpr decltype(left) kLongest_ms = 3'600'000;
-  return static_cast<int>(std::clamp<decltype(left)>(left, 0, kLongest_ms));
+  const decltype(left) longest_ms = can_stop ? 100 : 3'600'000;
+  return static_cast<int>(std::clamp<decltype(left)>(left, 0, longest_ms));
 }
 
 /// Waits until at least one child has something to say or is late; moves those that ended into
 /// `outcomes`.
 void collect(std::vector<std::unique_ptr<Child>>& children,
-             std::map<std::size_t, WorkerOutcome>& outcomes) {
+             std::map<std::size_t, WorkerOutcome>& outcomes, bool can_stop) {
   std::vector<pollfd> polled;
   polled.reserve(children.size());
   for (const auto& child : children) polled.push_back({child->pipe(), POLLIN, 0});
-  const int ready = ::poll(polled.data(), polled.size(), poll_timeout_ms(children));
+  const int ready = ::poll(polled.data(), polled.size(), poll_timeout_ms(children, can_stop));
   for (std::size_t i = children.size(); i-- > 0;) {
     std::optional<WorkerOutcome> outcome;
     if (ready > 0 && polled[i].revents != 0) outcome = children[i]->receive();
@@ -328,7 +329,7 @@ const char* stage_name(WorkerStage stage) {
 }
 
 void run_workers(std::size_t count, unsigned jobs, const WorkerLimits& limits,
-                 const WorkerTask& task, const WorkerDone& on_done) {
+                 const WorkerTask& task, const WorkerDone& on_done, const WorkerStop& stop) {
   DOWEL_EXPECTS(limits.max_seconds > 0.0 && limits.max_memory_mb > 0);
   // Outcomes wait for those before them: do not run so far ahead that they fill the memory.
   constexpr std::size_t kMostWaiting = 64;
@@ -337,16 +338,19 @@ void run_workers(std::size_t count, unsigned jobs, const WorkerLimits& limits,
   std::size_t next_to_start = 0;
   std::size_t next_to_report = 0;
   while (next_to_report < count) {
+    if (stop && stop()) return;
     while (next_to_start < count && children.size() < std::max(jobs, 1U) &&
            next_to_start < next_to_report + kMostWaiting) {
       children.push_back(std::make_unique<Child>(next_to_start, limits, task));
       ++next_to_start;
     }
-    collect(children, outcomes);
+    collect(children, outcomes, stop != nullptr);
     for (auto first = outcomes.begin(); first != outcomes.end() && first->first == next_to_report;
          first = outcomes.begin()) {
       WorkerOutcome outcome = std::move(first->second);
       outcomes.erase(first);
+      // What stops the caller may have ended the child, too: then its outcome says nothing.
+      if (stop && stop()) return;
       if (!on_done(next_to_report++, std::move(outcome))) return;
     }
   }

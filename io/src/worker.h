@@ -32,13 +32,17 @@ using WorkerTask = std::function<std::vector<std::byte>(
 /// Receives the outcomes in the order of the indices; false: start no more and end those running.
 using WorkerDone = std::function<bool(std::size_t index, WorkerOutcome&& outcome)>;
 
+/// Asked several times a second; true: report no more and end those running.
+using WorkerStop = std::function<bool()>;
+
 /// Runs `task(i)` for each i in [0, count) in a forked child of its own, `jobs` at a time (at least
 /// one). A child has no standard input or output, none of the caller's open files, no core dump; it
-/// dies with the caller. Whatever it does (crash, hang, exhaust memory) ends as one outcome. All
-/// children are reaped when this returns or throws.
+/// dies with the caller, and Ctrl-C at the terminal is the caller's alone. Whatever it does (crash,
+/// hang, exhaust memory) ends as one outcome. All children are reaped when this returns or throws.
 /// Expects: no other thread of the process is running, limits > 0.
 /// Throws: what `on_done` throws; Error{FileUnreadable} where no process can be started.
 void run_workers(std::size_t count, unsigned jobs, const WorkerLimits& limits,
-                 const WorkerTask& task, const WorkerDone& on_done);
+                 const WorkerTask& task, const WorkerDone& on_done,
+                 const WorkerStop& stop = nullptr);
 
 }  // namespace dowel

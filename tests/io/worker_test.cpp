@@ -172,6 +172,32 @@ TEST_CASE("no outcome follows the one that was answered with false, and no child
   CHECK_FALSE(has_children());
 }
 
+TEST_CASE("whoever stops the workers gets no outcome after that, and no child stays") {
+  std::size_t calls = 0;
+  bool is_stopped = false;
+  run_workers(
+      100, 2, {},
+      [](std::size_t index, const Report&) {
+        if (index > 2) ::sleep(60);
+        return std::vector<std::byte>{};
+      },
+      [&](std::size_t, WorkerOutcome&&) {
+        is_stopped = ++calls == 3;
+        return true;
+      },
+      [&] { return is_stopped; });
+  CHECK(calls == 3);
+  CHECK_FALSE(has_children());
+}
+
+TEST_CASE("a worker is out of reach of the Ctrl-C that its caller gets") {
+  const pid_t group = ::getpgrp();
+  const WorkerOutcome outcome = run_one({}, [&](std::size_t, const Report&) {
+    return bytes_of(::getpgrp() == group ? "the same group" : "a group of its own");
+  });
+  CHECK(outcome.output == bytes_of("a group of its own"));
+}
+
 TEST_CASE("an exception of the receiver leaves no child behind") {
   CHECK_THROWS_AS(run_workers(
                       3, 2, {},

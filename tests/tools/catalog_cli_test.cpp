@@ -100,7 +100,8 @@ TEST_CASE("A build prints a line of JSON for each file, sorted, and goes on past
   CHECK(keys_of(lines[0]) == std::vector<std::string>{"file", "status", "reason", "seconds"});
   CHECK(lines[0]["file"] == "parts/bad.off");
   CHECK(lines[0]["status"] == "failed");
-  CHECK(keys_of(lines[1]) == std::vector<std::string>{"file", "status", "elements", "seconds"});
+  CHECK(keys_of(lines[1]) ==
+        std::vector<std::string>{"file", "status", "elements", "faces", "seconds"});
   CHECK(lines[1]["file"] == "parts/block.off");
   CHECK(lines[1]["status"] == "ok");
   CHECK(lines[1]["elements"] == Json({"block"}));

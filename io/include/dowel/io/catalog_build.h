@@ -23,6 +23,9 @@ struct BuildOptions {
   /// Folder, made where it is missing, for a project of each file that places more than one part:
   /// "as1.stp" becomes "as1.dowelproj". A project that is there already is left as it is.
   std::optional<std::filesystem::path> assemblies;
+  /// Asked several times a second; true ends the build. What was put stays, files that were being
+  /// read are left for the next build, and the report ends before them.
+  std::function<bool()> stop;
 };
 
 enum class BuildStatus {
@@ -45,6 +48,7 @@ struct BuiltFile {
   /// What the reader found wrong and went on past; an Unchanged file is not read and has none.
   std::vector<std::string> warnings;
   std::vector<std::string> elements;  ///< their names in the catalogue
+  std::size_t faces = 0;              ///< of those elements, where the file was read now
   std::string project;                ///< that was made of its assembly; may be empty
   std::size_t instances = 0;          ///< in that project
   double seconds = 0.0;               ///< to read it and to recognise its features

@@ -71,8 +71,10 @@ ImportResult import_file(const std::filesystem::path& file, const ImportOptions&
 
 /// The same for many files, `jobs` children at a time. `on_done(i, result)` is called in the
 /// calling thread as each finishes, in the order of `files`; where it returns false no more are
-/// started.
+/// started. `stop` is asked several times a second; once it says true, no more are reported and
+/// those being read are dropped.
 void import_files(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
-                  unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done);
+                  unsigned jobs, const std::function<bool(std::size_t, ImportResult&&)>& on_done,
+                  const std::function<bool()>& stop = nullptr);
 
 }  // namespace dowel
