@@ -2,10 +2,9 @@
 #include <map>
 #include <vector>
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Rigid_triangle_mesh_collision_detection.h>
-#include <CGAL/Surface_mesh.h>
 
+#include "cgal_mesh.h"
 #include "checker.h"
 
 namespace dowel::bench {
@@ -14,8 +13,7 @@ namespace {
 
 /// Exact predicates on AABB trees, one a mesh, for elements whose boxes overlap.
 class CgalChecker : public Checker {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-  using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+  using Mesh = testing::CgalMesh;
   using Detection = CGAL::Rigid_triangle_mesh_collision_detection<Mesh>;
 
   struct Shared {
@@ -55,23 +53,13 @@ class CgalChecker : public Checker {
   static constexpr double kRounding_mm = 1.0e-6;  // of turned boxes, generously
 
   void place(std::size_t id, const Pose& pose) {
-    const Eigen::Matrix3d r = pose.rotation_matrix();
-    const Eigen::Vector3d& p = pose.translation();
-    detection_.set_transformation(
-        id, CGAL::Aff_transformation_3<Kernel>(r(0, 0), r(0, 1), r(0, 2), p.x(), r(1, 0), r(1, 1),
-                                               r(1, 2), p.y(), r(2, 0), r(2, 1), r(2, 2), p.z()));
+    detection_.set_transformation(id, testing::cgal_pose(pose));
   }
 
   const Shared& shared(const ElementPtr& element) {
     Shared& found = meshes_[element.get()];
     if (found.tree == nullptr) {
-      std::vector<Mesh::Vertex_index> vertices;
-      for (const Eigen::Vector3d& p : element->solid->vertices) {
-        vertices.push_back(found.mesh.add_vertex({p.x(), p.y(), p.z()}));
-      }
-      for (const Triangle& t : element->solid->triangles) {
-        found.mesh.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-      }
+      found.mesh = testing::cgal_mesh(*element->solid);
       const auto [begin, end] = faces(found.mesh);
       found.tree = std::make_unique<Detection::AABB_tree>(begin, end, found.mesh);
       found.tree->build();

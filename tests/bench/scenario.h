@@ -5,30 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "dowel/kernel/box.h"
-#include "dowel/kernel/faceted_solid.h"
+#include "dowel/kernel/pose.h"
+#include "element.h"
 
 /// Scenes like the four test scenarios of Peng et al. 2009, section 7, made in code from a fixed
 /// seed: the paper gives their triangle counts and pictures, not their data.
 namespace dowel::bench {
-
-struct Ball {
-  Eigen::Vector3d center;
-  double radius_mm = 0.0;
-};
-
-/// An element and what is known of its exact solid without any collision test.
-struct Element {
-  std::string name;
-  std::shared_ptr<const FacetedSolid> solid;
-  Aabb box;                      ///< of the exact solid, tight
-  std::vector<Aabb> core;        ///< boxes that are all material
-  std::vector<Ball> core_balls;  ///< balls that are all material; the moving element has them
-  std::vector<Aabb> hull;        ///< boxes that together contain the exact solid
-  std::vector<std::uint32_t> hole_faces;  ///< walls of holes
-};
-
-using ElementPtr = std::shared_ptr<const Element>;
 
 struct Placed {
   ElementPtr element;

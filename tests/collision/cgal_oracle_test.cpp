@@ -8,11 +8,10 @@
 #include <set>
 #include <vector>
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Rigid_triangle_mesh_collision_detection.h>
-#include <CGAL/Surface_mesh.h>
 #include <catch2/catch.hpp>
 
+#include "cgal_mesh.h"
 #include "collision_element.h"
 #include "random_geometry.h"
 #include "solids.h"
@@ -26,8 +25,7 @@ namespace testing = dowel::testing;
 namespace {
 
 using Outline = std::vector<Eigen::Vector2d>;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+using Mesh = testing::CgalMesh;
 using Detection = CGAL::Rigid_triangle_mesh_collision_detection<Mesh>;
 
 #ifdef DOWEL_SANITIZED
@@ -107,27 +105,14 @@ class CgalAssembly {
   explicit CgalAssembly(double grown_mm) : grown_mm_(grown_mm) {}
 
   std::size_t add(const Prism& prism, const Pose& X_WB) {
-    const dowel::FacetedSolid solid = prism.grown(grown_mm_);
-    Mesh mesh;
-    std::vector<Mesh::Vertex_index> vertices;
-    for (const Eigen::Vector3d& p : solid.vertices) {
-      vertices.push_back(mesh.add_vertex({p.x(), p.y(), p.z()}));
-    }
-    for (const dowel::Triangle& t : solid.triangles) {
-      mesh.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-    }
-    meshes_.push_back(std::make_unique<Mesh>(std::move(mesh)));
+    meshes_.push_back(std::make_unique<Mesh>(testing::cgal_mesh(prism.grown(grown_mm_))));
     const std::size_t id = detection_.add_mesh(*meshes_.back());
     place(id, X_WB);
     return id;
   }
 
   void place(std::size_t id, const Pose& pose) {
-    const Eigen::Matrix3d r = pose.rotation_matrix();
-    const Eigen::Vector3d& p = pose.translation();
-    detection_.set_transformation(
-        id, CGAL::Aff_transformation_3<Kernel>(r(0, 0), r(0, 1), r(0, 2), p.x(), r(1, 0), r(1, 1),
-                                               r(1, 2), p.y(), r(2, 0), r(2, 1), r(2, 2), p.z()));
+    detection_.set_transformation(id, testing::cgal_pose(pose));
   }
 
   /// Those that have a point in common with `id`.
