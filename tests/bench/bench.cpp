@@ -2,118 +2,158 @@
 #include <array>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
 #include <CLI/CLI.hpp>
 
+#include "error_study.h"
+#include "judged_moves.h"
+#include "object_index.h"
 #include "report.h"
+#include "skips.h"
+#include "stability.h"
 
 namespace dowel::bench {
 
 namespace {
 
-std::vector<Method> all_methods() {
-  return {
-      {"dowel", make_dowel},
-      {"dowel first", make_dowel_first},
-      {"dowel paper", make_dowel_paper},
-      {"published", make_published, 5},
-#ifdef DOWEL_BENCH_FCL
-      {"FCL OBBRSS", make_fcl_obbrss},
-#endif
-#ifdef DOWEL_BENCH_FCL_FLOAT
-      {"FCL OBB float", make_fcl_obb_float},
-#endif
-#ifdef DOWEL_BENCH_ODE
-      {"ODE", make_ode},
-#endif
-#ifdef DOWEL_BENCH_BULLET
-      {"Bullet", make_bullet},
-#endif
-#ifdef DOWEL_BENCH_CGAL
-      {"CGAL", make_cgal, 5},
-#endif
-  };
-}
+constexpr std::array kStudies{"moves",   "growth", "judged",   "error",
+                              "objects", "skips",  "stability"};
+
+struct Arguments {
+  Plan plan;
+  bool is_quick = false;
+  std::string json_file;
+  std::string plot_folder;
+  std::vector<std::string> studies;
+  std::vector<std::string> methods;
+  std::vector<std::string> scenes;
+  std::vector<std::string> motions;
+  std::size_t wrong_limit = 3;
+};
 
 bool is_wanted(const std::vector<std::string>& wanted, std::string_view name) {
-  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  return wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
+}
+
+void add_options(CLI::App& app, Arguments& given) {
+  app.add_flag("--quick", given.is_quick,
+               "Few poses, one round; fails where a verdict of dowel is wrong");
+  app.add_option("--only", given.studies, "Studies to run; all if not given")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(kStudies.begin(), kStudies.end())));
+  app.add_option("--json", given.json_file, "Writes all figures to this file");
+  app.add_option("--plots", given.plot_folder, "Writes the diagrams into this folder");
+  app.add_option("--poses", given.plan.poses, "Poses of a motion")->capture_default_str();
+  app.add_option("--rounds", given.plan.rounds, "Each pose counts with its fastest round")
+      ->capture_default_str();
+  app.add_option("--methods", given.methods, "dowel,\"FCL OBBRSS\",...")->delimiter(',');
+  app.add_option("--scenes", given.scenes, "a,b,c,d")->delimiter(',');
+  app.add_option("--motions", given.motions, "free,near,insert,fit,contact,contained,tight")
+      ->delimiter(',');
+  app.add_option("--wrong", given.wrong_limit, "Wrong verdicts shown of each scene and motion")
+      ->capture_default_str();
+}
+
+void run_moves(const Arguments& given, const std::vector<Method>& methods, Results& results) {
+  for (Scenario& scenario : paper_scenarios()) {
+    if (!is_wanted(given.scenes, scenario.name)) continue;
+    std::fprintf(stderr, "scene %s\n", scenario.name.c_str());
+    std::vector<Run> runs = run_scenario(scenario, methods, given.plan);
+    std::move(runs.begin(), runs.end(), std::back_inserter(results.runs));
+    results.scenarios.push_back(std::move(scenario));
+  }
+}
+
+void run_growth(const Arguments& given, const std::vector<Method>& methods, Results& results) {
+  std::vector<std::size_t> counts{10, 100, 1000, 10000, 100000};
+  if (given.is_quick) counts.resize(3);
+  for (const Method& method : methods) {
+    for (const std::size_t count : counts) {
+      if (count > method.most_elements) continue;
+      std::fprintf(stderr, "growth %s %zu\n", std::string(method.name).c_str(), count);
+      results.scale.push_back(run_scale(count, method, given.plan));
+    }
+  }
+  for (const Method& method : methods) {
+    for (const double size_mm : {5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 400.0}) {
+      results.sizes.push_back(run_size(size_mm, method, given.plan));
+    }
+  }
+}
+
+Results run_studies(const Arguments& given) {
+  std::vector<Method> methods;
+  for (const Method& method : all_methods()) {
+    if (is_wanted(given.methods, method.name)) methods.push_back(method);
+  }
+  Results results;
+  for (const Method& method : methods) results.methods.emplace_back(method.name);
+  if (is_wanted(given.studies, "moves")) run_moves(given, methods, results);
+  if (is_wanted(given.studies, "growth") && !methods.empty()) run_growth(given, methods, results);
+  if (is_wanted(given.studies, "judged")) {
+    std::fprintf(stderr, "verdicts of many moves\n");
+    JudgedMoves judged = run_judged_moves(methods, given.plan);
+    results.tables.push_back(std::move(judged.table));
+    results.has_wrong_verdict = judged.dowel_wrong != 0;
+  }
+  if (is_wanted(given.studies, "error")) {
+    std::fprintf(stderr, "run time against error\n");
+    const std::vector<ErrorPoint> points = run_error_study(given.plan);
+    for (Table& table : error_tables(points)) results.tables.push_back(std::move(table));
+    results.charts["time-against-error"] = error_chart(points);
+  }
+  const auto take = [&](const char* study, std::vector<Table> (*run_study)(const Plan&)) {
+    if (!is_wanted(given.studies, study)) return;
+    std::fprintf(stderr, "%s\n", study);
+    for (Table& table : run_study(given.plan)) results.tables.push_back(std::move(table));
+  };
+  take("objects", run_object_study);
+  take("skips", run_skip_study);
+  take("stability", run_stability);
+  if (!results.runs.empty()) results.charts["time-per-move"] = time_chart(results);
+  if (!results.scale.empty()) results.charts["growth"] = growth_chart(results);
+  if (!results.sizes.empty()) results.charts["moving-size"] = size_chart(results);
+  return results;
+}
+
+/// Throws std::runtime_error where the file cannot be written.
+void write_file(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream file(path, std::ios::binary);
+  file << content;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
 int run(int argc, char** argv) {
   CLI::App app(
       "Times dowel's collision checks against other libraries on the same triangles and poses");
-  Plan plan;
-  bool is_quick = false;
-  std::string json_file;
-  std::vector<std::string> method_names;
-  std::vector<std::string> scene_names;
-  std::vector<std::string> motion_names;
-  std::vector<std::size_t> counts{10, 100, 1000, 10000};
-  bool has_growth = true;
-  std::size_t wrong_limit = 3;
-  app.add_flag("--quick", is_quick,
-               "Few poses, one round; fails where a verdict of dowel is wrong");
-  app.add_option("--json", json_file, "Writes all figures to this file");
-  app.add_option("--poses", plan.poses, "Poses of a motion")->capture_default_str();
-  app.add_option("--rounds", plan.rounds, "Each pose counts with its fastest round")
-      ->capture_default_str();
-  app.add_option("--methods", method_names, "dowel,\"FCL OBBRSS\",...")->delimiter(',');
-  app.add_option("--scenes", scene_names, "a,b,c,d")->delimiter(',');
-  app.add_option("--motions", motion_names, "free,near,insert,fit,contact,contained,tight")
-      ->delimiter(',');
-  app.add_option("--wrong", wrong_limit, "Wrong verdicts shown of each scene and motion")
-      ->capture_default_str();
-  app.add_flag("--growth,!--no-growth", has_growth, "Scenes of 10 to 10,000 elements");
+  Arguments given;
+  add_options(app, given);
   CLI11_PARSE(app, argc, argv);
-  if (is_quick) {
-    plan.poses = 100;
-    plan.rounds = 1;
-    counts.pop_back();
+  if (given.is_quick) {
+    given.plan.poses = 100;
+    given.plan.rounds = 1;
   }
   for (const MotionKind kind : kMotionKinds) {
-    if (is_wanted(motion_names, to_string(kind))) plan.kinds.push_back(kind);
+    if (is_wanted(given.motions, to_string(kind))) given.plan.kinds.push_back(kind);
   }
-  std::vector<Method> methods;
-  for (const Method& method : all_methods()) {
-    if (is_wanted(method_names, method.name)) methods.push_back(method);
-  }
-
-  Results results;
-  for (const Method& method : methods) results.methods.emplace_back(method.name);
-  for (Scenario& scenario : paper_scenarios()) {
-    if (!is_wanted(scene_names, scenario.name)) continue;
-    std::fprintf(stderr, "scene %s\n", scenario.name.c_str());
-    std::vector<Run> runs = run_scenario(scenario, methods, plan);
-    std::move(runs.begin(), runs.end(), std::back_inserter(results.runs));
-    results.scenarios.push_back(std::move(scenario));
-  }
-  if (has_growth && !methods.empty()) {
-    for (const Method& method : methods) {
-      for (const std::size_t count : counts) {
-        std::fprintf(stderr, "growth %s %zu\n", std::string(method.name).c_str(), count);
-        results.scale.push_back(run_scale(count, method, plan));
+  const Results results = run_studies(given);
+  write_tables(std::cout, results);
+  write_wrong_verdicts(std::cerr, results, given.wrong_limit);
+  try {
+    if (!given.plot_folder.empty()) {
+      for (const auto& [name, chart] : results.charts) {
+        write_file(std::filesystem::path(given.plot_folder) / (name + ".svg"), svg(chart));
       }
     }
+    if (!given.json_file.empty()) write_file(given.json_file, json_text(results));
+  } catch (const std::runtime_error& error) {
+    std::cerr << error.what() << '\n';
+    return 3;
   }
-  write_tables(std::cout, results);
-  write_wrong_verdicts(std::cerr, results, wrong_limit);
-  const bool is_wrong = std::any_of(results.runs.begin(), results.runs.end(), [](const Run& one) {
-    if (one.method != "dowel" && one.method != "dowel first") return false;
-    const Run* const runs[] = {&one};
-    const Score score = score_own_question(runs);
-    return score.false_yes + score.false_no + score.other != 0;
-  });
-  if (!json_file.empty()) {
-    std::ofstream file(json_file);
-    write_json(file, results);
-    if (!file.flush()) {
-      std::cerr << json_file << ": cannot be written\n";
-      return 3;
-    }
-  }
-  return is_quick && is_wrong ? 1 : 0;
+  return given.is_quick && has_wrong_verdict_of_dowel(results) ? 1 : 0;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <btBulletCollisionCommon.h>
 
-#include "checker.h"
+#include "methods.h"
 
 namespace dowel::bench {
 
@@ -35,6 +35,11 @@ class BulletChecker : public Checker {
     objects_.back()->setCollisionShape(shared(placed.element));
     place(*objects_.back(), placed.X_WE);
     world_.addCollisionObject(objects_.back().get());
+  }
+
+  void remove_last() override {
+    world_.removeCollisionObject(objects_.back().get());
+    objects_.pop_back();
   }
 
   void set_moving(const ElementPtr& element) override {

@@ -5,7 +5,7 @@
 #include <CGAL/Rigid_triangle_mesh_collision_detection.h>
 
 #include "cgal_mesh.h"
-#include "checker.h"
+#include "methods.h"
 
 namespace dowel::bench {
 
@@ -29,6 +29,12 @@ class CgalChecker : public Checker {
     ids_.push_back(detection_.add_mesh(*found.tree, found.mesh));
     boxes_W_.push_back(placed.box_W);
     place(ids_.back(), placed.X_WE);
+  }
+
+  void remove_last() override {
+    detection_.remove_mesh(ids_.back());
+    ids_.pop_back();
+    boxes_W_.pop_back();
   }
 
   void set_moving(const ElementPtr& element) override {

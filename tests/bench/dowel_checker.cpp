@@ -1,9 +1,11 @@
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
-#include "checker.h"
 #include "dowel/collision/model.h"
 #include "dowel/collision/scene.h"
+#include "methods.h"
 
 namespace dowel::bench {
 
@@ -11,22 +13,52 @@ namespace {
 
 class DowelChecker : public Checker {
  public:
-  explicit DowelChecker(const QueryOptions& options) : options_(options) {}
+  explicit DowelChecker(const DowelMode& mode)
+      : options_{.tolerance_mm = mode.tolerance_mm,
+                 .holes = mode.holes,
+                 .first_only = mode.first_only},
+        mode_(mode) {}
 
   void prepare(const ElementPtr& element) override { (void)shared(element)->model(); }
 
-  void add(const Placed& placed) override { scene_.add(shared(placed.element), placed.X_WE); }
+  void add(const Placed& placed) override {
+    bodies_.push_back(scene_.add(shared(placed.element), placed.X_WE));
+  }
+
+  void remove_last() override {
+    scene_.remove(bodies_.back());
+    bodies_.pop_back();
+  }
 
   void set_moving(const ElementPtr& element) override {
     moving_ = scene_.add(shared(element), Pose());
   }
 
   Answer check(const Pose& X_WM) override {
-    Verdict worst = Verdict::Clear;
-    for (const auto& found : scene_.check({&moving_, 1}, {&X_WM, 1}, options_)) {
-      worst = std::max(worst, found.pair.verdict);
+    // What is remembered holds for one tolerance: another one, by the least there is, drops it.
+    if (mode_.forgets) {
+      options_.tolerance_mm = options_.tolerance_mm == mode_.tolerance_mm
+                                  ? std::nextafter(mode_.tolerance_mm, 1.0)
+                                  : mode_.tolerance_mm;
     }
-    return {worst == Verdict::Interference, worst};
+    const Verdict verdict =
+        mode_.uses_brute_force
+            ? worst(scene_.check_brute_force({&moving_, 1}, {&X_WM, 1}, options_))
+            : worst(scene_.check({&moving_, 1}, {&X_WM, 1}, options_));
+    return {verdict == Verdict::Interference, verdict};
+  }
+
+  /// Of parts in contact or interference; of those that are clear only a bound is known.
+  std::optional<double> measured_gap_mm(const Pose& X_WM) override {
+    QueryOptions options = options_;
+    options.measure_depth = true;
+    std::optional<double> gap_mm;
+    for (const auto& found : scene_.check({&moving_, 1}, {&X_WM, 1}, options)) {
+      const double gap =
+          found.pair.verdict == Verdict::Interference ? -found.pair.depth_mm : found.pair.gap_mm;
+      gap_mm = std::min(gap_mm.value_or(gap), gap);
+    }
+    return gap_mm;
   }
 
   std::optional<Counters> take_counters() override {
@@ -40,35 +72,39 @@ class DowelChecker : public Checker {
     auto& found = elements_[element.get()];
     if (found == nullptr) {
       const Aabb& box = element->box;
+      std::shared_ptr<const FacetedSolid> solid = element->solid;
+      if (mode_.knows_facets_alone) solid = by_facets_alone(*solid);
       found = std::make_shared<const CollisionElement>(
           Obb{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.size()},
-          [element] { return element->solid; }, element->hole_faces);
+          [solid] { return solid; }, element->hole_faces);
     }
     return found;
   }
 
+  static std::shared_ptr<const FacetedSolid> by_facets_alone(FacetedSolid solid) {
+    for (Face& face : solid.faces) {
+      if (is_plane(face.surface)) continue;
+      face.surface = OtherSurface{};
+      face.reversed = false;
+    }
+    for (Edge& edge : solid.edges) {
+      if (edge.curve == CurveKind::Circle) edge.curve = CurveKind::Other;
+    }
+    return std::make_shared<const FacetedSolid>(std::move(solid));
+  }
+
   QueryOptions options_;
+  DowelMode mode_;
   CollisionScene scene_;
   std::map<const Element*, std::shared_ptr<const CollisionElement>> elements_;
+  std::vector<BodyId> bodies_;
   BodyId moving_;
 };
 
 }  // namespace
 
-std::unique_ptr<Checker> make_dowel() {
-  return std::make_unique<DowelChecker>(QueryOptions{});
-}
-
-std::unique_ptr<Checker> make_dowel_first() {
-  QueryOptions options;
-  options.first_only = true;
-  return std::make_unique<DowelChecker>(options);
-}
-
-std::unique_ptr<Checker> make_dowel_paper() {
-  QueryOptions options;
-  options.holes = HoleMode::Paper;
-  return std::make_unique<DowelChecker>(options);
+std::unique_ptr<Checker> make_dowel(const DowelMode& mode) {
+  return std::make_unique<DowelChecker>(mode);
 }
 
 }  // namespace dowel::bench

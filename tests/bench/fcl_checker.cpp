@@ -6,4 +6,8 @@ std::unique_ptr<Checker> make_fcl_obbrss() {
   return std::make_unique<FclChecker<fcl::OBBRSS<double>>>();
 }
 
+std::unique_ptr<Checker> make_fcl_obb() {
+  return std::make_unique<FclChecker<fcl::OBB<double>>>();
+}
+
 }  // namespace dowel::bench

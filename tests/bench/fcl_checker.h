@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -7,8 +9,9 @@
 #include <fcl/broadphase/default_broadphase_callbacks.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 
-#include "checker.h"
+#include "methods.h"
 
 namespace dowel::bench {
 
@@ -29,6 +32,11 @@ class FclChecker : public Checker {
     manager_.registerObject(objects_.back().get());
   }
 
+  void remove_last() override {
+    manager_.unregisterObject(objects_.back().get());
+    objects_.pop_back();
+  }
+
   void set_moving(const ElementPtr& element) override {
     moving_ = std::make_unique<Object>(shared(element));
   }
@@ -40,6 +48,21 @@ class FclChecker : public Checker {
     fcl::DefaultCollisionData<Scalar> data;
     manager_.collide(moving_.get(), &data, fcl::DefaultCollisionFunction<Scalar>);
     return {data.result.isCollision(), {}};
+  }
+
+  /// FCL measures the distance of meshes that are apart, on trees that have spheres swept along
+  /// rectangles; it knows no depth.
+  std::optional<double> measured_gap_mm(const Pose& X_WM) override {
+    if (Model().getNodeType() != fcl::BV_OBBRSS) return {};
+    place(*moving_, X_WM);
+    double gap_mm = std::numeric_limits<double>::infinity();
+    for (const auto& object : objects_) {
+      fcl::DistanceRequest<Scalar> request;
+      fcl::DistanceResult<Scalar> result;
+      gap_mm = std::min(
+          gap_mm, static_cast<double>(fcl::distance(moving_.get(), object.get(), request, result)));
+    }
+    return gap_mm > 0.0 ? std::optional(gap_mm) : std::nullopt;
   }
 
  private:

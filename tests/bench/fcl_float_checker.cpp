@@ -3,6 +3,10 @@
 
 namespace dowel::bench {
 
+std::unique_ptr<Checker> make_fcl_obbrss_float() {
+  return std::make_unique<FclChecker<fcl::OBBRSS<float>>>();
+}
+
 std::unique_ptr<Checker> make_fcl_obb_float() {
   return std::make_unique<FclChecker<fcl::OBB<float>>>();
 }

@@ -18,14 +18,6 @@ double elapsed_us(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double, std::micro>(end - start).count();
 }
 
-/// Time that this thread has had a processor: what other programs take does not count. Reading it
-/// takes longer than a check, so that it serves for batches only.
-double processor_us() {
-  timespec now{};
-  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1.0e6 * static_cast<double>(now.tv_sec) + 1.0e-3 * static_cast<double>(now.tv_nsec);
-}
-
 double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0.0;
   const auto at = static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)));
@@ -41,6 +33,27 @@ std::vector<Pose> every(std::span<const Pose> poses, std::size_t stride) {
 
 /// Hits are summed up and kept, so that no check is optimised away.
 volatile std::size_t g_hits = 0;
+
+std::size_t heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+}  // namespace
+
+double processor_us() {
+  timespec now{};
+  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1.0e6 * static_cast<double>(now.tv_sec) + 1.0e-3 * static_cast<double>(now.tv_nsec);
+}
+
+Run blank_run(std::size_t poses) {
+  Run run;
+  run.answers.resize(poses);
+  run.times_us.assign(poses, std::numeric_limits<double>::infinity());
+  run.batch_mean_us = std::numeric_limits<double>::infinity();
+  return run;
+}
 
 void run_timed(Checker& checker, std::span<const Pose> poses, Run& run) {
   Clock::time_point start = Clock::now();
@@ -61,13 +74,6 @@ void run_batch(Checker& checker, std::span<const Pose> poses, Run& run) {
   g_hits = g_hits + hits;
   run.batch_mean_us = std::min(run.batch_mean_us, taken_us / static_cast<double>(poses.size()));
 }
-
-std::size_t heap_bytes() {
-  const struct mallinfo2 info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-}
-
-}  // namespace
 
 Statistics statistics(std::span<const Run* const> runs) {
   std::vector<double> times;
@@ -135,16 +141,13 @@ std::vector<Run> run_scenario(const Scenario& scenario, std::span<const Method> 
     const Motion motion = motion_of(scenario, kind, plan.poses);
     for (const Method& method : methods) {
       poses.push_back(every(motion.poses, method.stride));
-      Run run;
+      Run run = blank_run(poses.back().size());
       run.scenario = scenario.name;
       run.kind = kind;
       run.method = method.name;
       for (std::size_t i = 0; i < motion.truth.size(); i += method.stride) {
         run.truth.push_back(motion.truth[i]);
       }
-      run.answers.resize(run.truth.size());
-      run.times_us.assign(run.truth.size(), std::numeric_limits<double>::infinity());
-      run.batch_mean_us = std::numeric_limits<double>::infinity();
       runs.push_back(std::move(run));
     }
   }
@@ -173,23 +176,22 @@ ScalePoint run_scale(std::size_t count, const Method& method, const Plan& plan) 
   const std::size_t last_half = count / 2;
   const std::size_t last_tenth = count - std::max<std::size_t>(count / 10, 1);
   std::size_t bytes = heap_bytes();
-  double start_us = 0.0;
+  const double begin_us = processor_us();
+  double start_us = begin_us;
   for (std::size_t i = 0; i < count; ++i) {
     if (i == last_half) bytes = heap_bytes();
     if (i == last_tenth) start_us = processor_us();
     checker->add(scenario.elements[i]);
   }
   point.add_us = (processor_us() - start_us) / static_cast<double>(count - last_tenth);
+  point.build_ms = 1.0e-3 * (processor_us() - begin_us);
   checker->set_moving(scenario.moving);
   checker->finish();
   (void)checker->check(poses.front());  // builds what is built on demand
   const auto grown = static_cast<double>(heap_bytes()) - static_cast<double>(bytes);
   point.bytes_per_element = grown / static_cast<double>(count - last_half);
 
-  Run run;
-  run.answers.resize(poses.size());
-  run.times_us.assign(poses.size(), std::numeric_limits<double>::infinity());
-  run.batch_mean_us = std::numeric_limits<double>::infinity();
+  Run run = blank_run(poses.size());
   for (std::size_t round = 0; round < plan.rounds; ++round) {
     run_timed(*checker, poses, run);
     run_batch(*checker, poses, run);
@@ -207,9 +209,37 @@ ScalePoint run_scale(std::size_t count, const Method& method, const Plan& plan) 
     times_us.push_back(elapsed_us(start, Clock::now()));
   }
   point.add_and_move_us = quantile(times_us, 0.5);
+  times_us.clear();
+  for (std::size_t i = 0; i < kMore; ++i) {
+    const Clock::time_point start = Clock::now();
+    checker->remove_last();
+    (void)checker->check(poses[i % poses.size()]);
+    times_us.push_back(elapsed_us(start, Clock::now()));
+  }
+  point.remove_us = quantile(times_us, 0.5);
   point.move_us = quantile(run.times_us, 0.5);
   point.move_mean_us = run.batch_mean_us;
   return point;
+}
+
+SizePoint run_size(double size_mm, const Method& method, const Plan& plan) {
+  Scenario scenario = field_of_elements(1000);
+  scenario.moving = share(block("block", Eigen::Vector3d::Constant(size_mm)));
+  const std::unique_ptr<Checker> checker = method.make();
+  for (const Placed& placed : scenario.elements) checker->add(placed);
+  checker->set_moving(scenario.moving);
+  checker->finish();
+  std::vector<Pose> poses;
+  for (const Pose& pose : field_path(scenario, plan.poses)) {
+    // Over the tops all the way: what it would sink by is not the question here.
+    Eigen::Vector3d p = pose.translation();
+    p.z() = std::max(p.z(), scenario.stage.max.z() + 0.05);
+    poses.emplace_back(pose.rotation(), p);
+  }
+  poses = every(poses, method.stride);
+  Run run = blank_run(poses.size());
+  for (std::size_t round = 0; round < plan.rounds; ++round) run_batch(*checker, poses, run);
+  return {std::string(method.name), size_mm, run.batch_mean_us};
 }
 
 }  // namespace dowel::bench

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "checker.h"
+#include "methods.h"
 #include "motion.h"
 
 namespace dowel::bench {
@@ -23,6 +23,13 @@ struct Run {
   std::vector<Truth> truth;
   std::optional<Checker::Counters> counters;
 };
+
+/// With room for the answers and times of `poses` poses.
+Run blank_run(std::size_t poses);
+
+/// One round, pose by pose, and one in one go: the run keeps the fastest.
+void run_timed(Checker& checker, std::span<const Pose> poses, Run& run);
+void run_batch(Checker& checker, std::span<const Pose> poses, Run& run);
 
 struct Statistics {
   double median_us = 0.0;
@@ -62,6 +69,8 @@ struct ScalePoint {
   std::size_t count = 0;
   std::string method;
   double add_us = 0.0;           ///< mean of adding the last tenth of the elements
+  double build_ms = 0.0;         ///< adding all of them, one by one
+  double remove_us = 0.0;        ///< median of taking one away and the first move after it
   double add_and_move_us = 0.0;  ///< median of adding one more and the first move after it
   double move_us = 0.0;          ///< median
   double move_mean_us = 0.0;
@@ -69,5 +78,18 @@ struct ScalePoint {
 };
 
 ScalePoint run_scale(std::size_t count, const Method& method, const Plan& plan);
+
+/// Mean time of a move over a field of 1,000 elements, by the size of the moving block.
+struct SizePoint {
+  std::string method;
+  double size_mm = 0.0;
+  double mean_us = 0.0;
+};
+
+SizePoint run_size(double size_mm, const Method& method, const Plan& plan);
+
+/// Time that this thread has had a processor: what other programs take does not count. Reading it
+/// takes longer than a check, so that it serves for batches only.
+double processor_us();
 
 }  // namespace dowel::bench

@@ -63,16 +63,13 @@ Eigen::Vector2d wander(const Aabb& area, double margin_mm, double s) {
           middle.y() + half.y() * std::sin(2.0 * kPi * 2.0 * s + 0.5)};
 }
 
-double share(std::size_t i, std::size_t count) {
-  return static_cast<double>(i) / static_cast<double>(count);
-}
-
 class MotionBuilder {
  public:
-  MotionBuilder(const Scenario& scenario, MotionKind kind, std::size_t count)
+  MotionBuilder(const Scenario& scenario, MotionKind kind, std::size_t count, std::uint64_t variant)
       : scene_(scenario),
         count_(count),
-        random_(1000 + static_cast<std::uint64_t>(kind)),
+        shift_(std::fmod(std::numbers::phi * static_cast<double>(variant), 1.0)),
+        random_(1000 + static_cast<std::uint64_t>(kind) + 100 * variant),
         reach_mm_(reach_mm(*scenario.moving)),
         height_mm_(scenario.moving->box.max.z()) {
     motion_.kind = kind;
@@ -106,6 +103,11 @@ class MotionBuilder {
   }
 
  private:
+  /// Between steps of the curve, other places in each variant.
+  double share(std::size_t i, std::size_t count) const {
+    return (static_cast<double>(i) + shift_) / static_cast<double>(count);
+  }
+
   static constexpr double kMargin_mm = 8.0;  // to what stands beside stage and aisle
 
   void add(const Pose& pose) { add(pose, truth_by_bounds(scene_, pose)); }
@@ -282,6 +284,7 @@ class MotionBuilder {
 
   const Scenario& scene_;
   std::size_t count_;
+  double shift_;
   testing::RandomGeometry random_;
   double reach_mm_;
   double height_mm_;
@@ -345,8 +348,9 @@ Truth truth_by_bounds(const Scenario& scenario, const Pose& X_WM, std::optional<
   return {};
 }
 
-Motion motion_of(const Scenario& scenario, MotionKind kind, std::size_t count) {
-  return MotionBuilder(scenario, kind, count).build();
+Motion motion_of(const Scenario& scenario, MotionKind kind, std::size_t count,
+                 std::uint64_t variant) {
+  return MotionBuilder(scenario, kind, count, variant).build();
 }
 
 std::vector<Pose> field_path(const Scenario& scenario, std::size_t count) {
@@ -361,7 +365,7 @@ std::vector<Pose> field_path(const Scenario& scenario, std::size_t count) {
     if ((at - center).norm() < (middle - center).norm() - kSlack) middle = at;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const double s = share(i, count);
+    const double s = static_cast<double>(i) / static_cast<double>(count);
     const double above = 0.05 + 0.475 * (1.0 + std::sin(2.0 * kPi * 9.0 * s));
     const double sink = i % 100 < 50 ? 0.0 : 0.3;
     poses.push_back(upright(middle.x() + 60.0 * std::sin(2.0 * kPi * 3.0 * s),

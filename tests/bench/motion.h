@@ -39,8 +39,9 @@ struct Motion {
   std::vector<Truth> truth;
 };
 
-/// The same on every machine.
-Motion motion_of(const Scenario& scenario, MotionKind kind, std::size_t count);
+/// The same on every machine. Another `variant` has other poses.
+Motion motion_of(const Scenario& scenario, MotionKind kind, std::size_t count,
+                 std::uint64_t variant = 0);
 
 /// A drag over the tops of a field of elements, 0.05 to 1 mm above them, and down between them.
 std::vector<Pose> field_path(const Scenario& scenario, std::size_t count);

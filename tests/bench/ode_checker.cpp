@@ -3,7 +3,7 @@
 
 #include <ode/ode.h>
 
-#include "checker.h"
+#include "methods.h"
 
 namespace dowel::bench {
 
@@ -35,6 +35,12 @@ class OdeChecker : public Checker {
   void add(const Placed& placed) override {
     const dGeomID geom = dCreateTriMesh(space_, shared(placed.element), nullptr, nullptr, nullptr);
     place(geom, placed.X_WE);
+    geoms_.push_back(geom);
+  }
+
+  void remove_last() override {
+    dGeomDestroy(geoms_.back());
+    geoms_.pop_back();
   }
 
   void set_moving(const ElementPtr& element) override {
@@ -94,6 +100,7 @@ class OdeChecker : public Checker {
 
   dSpaceID space_ = nullptr;
   std::map<const Element*, Mesh> meshes_;
+  std::vector<dGeomID> geoms_;  // the space destroys them
   dGeomID moving_ = nullptr;
 };
 

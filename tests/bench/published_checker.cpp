@@ -3,9 +3,9 @@
 #include <utility>
 #include <vector>
 
-#include "checker.h"
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/layered_projection.h"
+#include "methods.h"
 #include "triangle_pair.h"
 
 namespace dowel::bench {
@@ -30,6 +30,11 @@ class PublishedChecker : public Checker {
     model_.insert(static_cast<std::uint32_t>(placed_.size()), placed.box_W);
     placed_.push_back(
         {&facets(placed.element), transformed(placed.X_WE, box(*placed.element)), placed.X_WE});
+  }
+
+  void remove_last() override {
+    placed_.pop_back();
+    model_.remove(static_cast<std::uint32_t>(placed_.size()));
   }
 
   void set_moving(const ElementPtr& element) override {

@@ -1,5 +1,6 @@
 #include "report.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -7,16 +8,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "table.h"
+
 namespace dowel::bench {
 
 namespace {
-
-std::string text(double value) {
-  char buffer[32];
-  const char* format = value < 1.0 ? "%.2f" : value < 10.0 ? "%.1f" : "%.0f";
-  (void)std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 std::vector<const Run*> select(const Results& results, const std::string& method, MotionKind kind,
                                const std::string& scenario = {}) {
@@ -71,6 +67,7 @@ void header(std::ostream& out, const std::vector<std::string>& columns) {
 }
 
 void write_scenarios(std::ostream& out, const Results& results) {
+  if (results.scenarios.empty()) return;
   out << "### Scenes\n\nTriangles, and those of the paper's scenario of that name.\n\n";
   header(out, {"scene", "elements", "static", "paper", "moving", "paper"});
   for (const Scenario& scene : results.scenarios) {
@@ -170,30 +167,103 @@ void write_counters(std::ostream& out, const Results& results) {
   }
 }
 
+std::vector<const ScalePoint*> points_of(const Results& results, const std::string& method) {
+  std::vector<const ScalePoint*> points;
+  for (const ScalePoint& point : results.scale) {
+    if (point.method == method) points.push_back(&point);
+  }
+  return points;
+}
+
+/// The power of the number of elements that a time grows with, by least squares of the logarithms;
+/// from 100 elements on, below which fixed costs rule.
+std::string exponent(const std::vector<const ScalePoint*>& points, double ScalePoint::*value) {
+  double n = 0.0;
+  double sum_x = 0.0;
+  double sum_y = 0.0;
+  double sum_xx = 0.0;
+  double sum_xy = 0.0;
+  for (const ScalePoint* point : points) {
+    if (point->count < 100) continue;
+    const double x = std::log(static_cast<double>(point->count));
+    const double y = std::log(point->*value);
+    n += 1.0;
+    sum_x += x;
+    sum_y += y;
+    sum_xx += x * x;
+    sum_xy += x * y;
+  }
+  if (n < 2.0) return "–";
+  char buffer[32];
+  (void)std::snprintf(buffer, sizeof buffer, "%.2f",
+                      (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x));
+  return buffer;
+}
+
+/// One column for each number of elements that any method was run with.
+std::vector<std::string> count_columns(const Results& results) {
+  std::vector<std::string> columns{"method"};
+  for (const ScalePoint* point : points_of(results, results.methods.front())) {
+    columns.push_back(std::to_string(point->count));
+  }
+  return columns;
+}
+
 void write_scale(std::ostream& out, const Results& results) {
   if (results.scale.empty()) return;
-  out << "\n### Growth\n\nMicroseconds, by the number of elements: adding an element / adding one "
-         "and "
-         "the first move after it / median of a move among them, batch mean; and heap bytes an "
-         "element "
-         "takes beyond what instances share.\n\n";
-  std::vector<std::string> columns{"method"};
-  for (const ScalePoint& point : results.scale) {
-    if (point.method == results.methods.front()) columns.push_back(std::to_string(point.count));
-  }
-  columns.emplace_back("bytes");
-  header(out, columns);
+  Table moves{"Growth: moves",
+              "Microseconds of a move by the number of elements: median, batch mean; heap bytes "
+              "that an element takes beyond what instances share; and the power of the number of "
+              "elements that median and mean grow with from 100 on. A dash: the method's structure "
+              "does not hold so many, or looks at each of them.",
+              count_columns(results),
+              {}};
+  moves.columns.insert(moves.columns.end(), {"bytes", "power of medians", "of means"});
+  Table changes{"Growth: changes",
+                "Microseconds: adding an element / adding one and the first move after it / taking "
+                "one away and the first move after it, medians but for the first; milliseconds: "
+                "adding all elements one by one.",
+                count_columns(results),
+                {}};
+  const std::size_t width = changes.columns.size();
   for (const std::string& method : results.methods) {
-    out << "| " << method;
-    double bytes = 0.0;
-    for (const ScalePoint& point : results.scale) {
-      if (point.method != method) continue;
-      out << " | " << text(point.add_us) << " / " << text(point.add_and_move_us) << " / "
-          << text(point.move_us) << ", " << text(point.move_mean_us);
-      bytes = point.bytes_per_element;
+    std::vector<std::string> move_row{method};
+    std::vector<std::string> change_row{method};
+    const auto points = points_of(results, method);
+    for (const ScalePoint* p : points) {
+      move_row.push_back(text(p->move_us) + ", " + text(p->move_mean_us));
+      change_row.push_back(text(p->add_us, p->add_and_move_us) + " / " + text(p->remove_us) + "; " +
+                           text(p->build_ms));
     }
-    out << " | " << std::llround(bytes) << " |\n";
+    move_row.resize(width, "–");
+    change_row.resize(width, "–");
+    move_row.push_back(std::to_string(std::llround(points.back()->bytes_per_element)));
+    move_row.push_back(exponent(points, &ScalePoint::move_us));
+    move_row.push_back(exponent(points, &ScalePoint::move_mean_us));
+    moves.rows.push_back(std::move(move_row));
+    changes.rows.push_back(std::move(change_row));
   }
+  write(out, moves);
+  write(out, changes);
+}
+
+void write_sizes(std::ostream& out, const Results& results) {
+  if (results.sizes.empty()) return;
+  Table table{"Size of the moving element",
+              "A cube of this edge, in mm, over the tops of 1,000 elements, 0.05 to 1 mm above "
+              "them: mean microseconds of a move.",
+              {"method"},
+              {}};
+  for (const std::string& method : results.methods) {
+    std::vector<std::string> row{method};
+    for (const SizePoint& point : results.sizes) {
+      if (point.method != method) continue;
+      if (table.rows.empty()) table.columns.push_back(text(point.size_mm));
+      row.push_back(text(point.mean_us));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  write(out, table);
 }
 
 }  // namespace
@@ -218,9 +288,11 @@ void write_tables(std::ostream& out, const Results& results) {
     write_counters(out, results);
   }
   write_scale(out, results);
+  write_sizes(out, results);
+  for (const Table& table : results.tables) write(out, table);
 }
 
-void write_json(std::ostream& out, const Results& results) {
+std::string json_text(const Results& results) {
   nlohmann::json json;
   for (const Scenario& scene : results.scenarios) {
     json["scenes"].push_back({{"name", scene.name},
@@ -256,6 +328,8 @@ void write_json(std::ostream& out, const Results& results) {
                               {"method", point.method},
                               {"add_us", point.add_us},
                               {"add_and_move_us", point.add_and_move_us},
+                              {"remove_and_move_us", point.remove_us},
+                              {"build_ms", point.build_ms},
                               {"move_median_us", point.move_us},
                               {"move_mean_us", point.move_mean_us},
                               {"bytes_per_element", point.bytes_per_element}});
@@ -266,7 +340,76 @@ void write_json(std::ostream& out, const Results& results) {
         {"medians", ratio(results, method, &Statistics::median_us)},
         {"means", ratio(results, method, &Statistics::mean_us)}};
   }
-  out << json.dump(1) << '\n';
+  for (const Table& table : results.tables) {
+    json["tables"].push_back(
+        {{"title", table.title}, {"columns", table.columns}, {"rows", table.rows}});
+  }
+  return json.dump(1) + '\n';
+}
+
+Chart time_chart(const Results& results) {
+  Chart chart;
+  chart.title = "Time per move";
+  chart.subtitle = "Median of all four scenes; the line above it ends at the 99th percentile";
+  chart.x.label = "motion";
+  chart.y.label = "time of a check, µs";
+  const std::vector<MotionKind> kinds = kinds_of(results);
+  for (const MotionKind kind : kinds) chart.categories.emplace_back(to_string(kind));
+  const double step = 0.8 / static_cast<double>(results.methods.size());
+  for (std::size_t m = 0; m < results.methods.size(); ++m) {
+    Series series{results.methods[m], {}, SeriesStyle::Marks};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      const Statistics s = statistics(select(results, results.methods[m], kinds[k]));
+      const double place = static_cast<double>(k) + 0.6 + (static_cast<double>(m) + 0.5) * step;
+      series.marks.push_back({place, s.median_us, {}, s.p99_us});
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+Chart growth_chart(const Results& results) {
+  Chart chart;
+  chart.title = "Growth";
+  chart.subtitle = "A move close over the tops of a field of risers and pins: median";
+  chart.x.label = "elements";
+  chart.y.label = "time of a check, µs";
+  for (const std::string& method : results.methods) {
+    Series series{method, {}, SeriesStyle::Line};
+    for (const ScalePoint& point : results.scale) {
+      if (point.method != method) continue;
+      series.marks.push_back({static_cast<double>(point.count), point.move_us, {}, 0.0});
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+Chart size_chart(const Results& results) {
+  Chart chart;
+  chart.title = "Size of the moving element";
+  chart.subtitle = "A cube close over the tops of 1,000 elements: mean";
+  chart.x.label = "edge of the moving cube, mm";
+  chart.y.label = "time of a check, µs";
+  for (const std::string& method : results.methods) {
+    Series series{method, {}, SeriesStyle::Line};
+    for (const SizePoint& point : results.sizes) {
+      if (point.method != method) continue;
+      series.marks.push_back({point.size_mm, point.mean_us, {}, 0.0});
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+bool has_wrong_verdict_of_dowel(const Results& results) {
+  if (results.has_wrong_verdict) return true;
+  return std::ranges::any_of(results.runs, [](const Run& one) {
+    if (one.method != "dowel" && one.method != "dowel first") return false;
+    const Run* const runs[] = {&one};
+    const Score score = score_own_question(runs);
+    return score.false_yes + score.false_no + score.other != 0;
+  });
 }
 
 void write_wrong_verdicts(std::ostream& out, const Results& results, std::size_t limit) {

@@ -258,8 +258,8 @@ std::size_t static_triangles(const Scenario& scenario) {
   return count;
 }
 
-std::vector<Scenario> paper_scenarios() {
-  const std::vector<Layout> layouts{
+std::vector<Scenario> paper_scenarios(std::uint64_t variant) {
+  std::vector<Layout> layouts{
       {"a", "slots, nut", 11316, 215, true, false, 2, 1,
        [] { return hexagon_nut(6.0 + kFitClearance_mm, 19.0, 10.0, 48); }},
       {"b", "holes, locator", 31296, 948, false, true, 3, 2, [] { return locator(kShank_mm, 48); }},
@@ -269,7 +269,10 @@ std::vector<Scenario> paper_scenarios() {
        [] { return rhombus_pin(kShank_mm, std::numbers::pi / 6.0, 30.0, 30); }}};
   std::vector<Scenario> result;
   result.reserve(layouts.size());
-  for (const Layout& layout : layouts) result.push_back(tuned(layout));
+  for (Layout& layout : layouts) {
+    layout.seed += 100 * variant;
+    result.push_back(tuned(layout));
+  }
   return result;
 }
 

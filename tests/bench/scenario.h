@@ -46,8 +46,9 @@ struct Scenario {
 
 std::size_t static_triangles(const Scenario& scenario);
 
-/// (a) nut, (b) locator, (c) bolt, (d) rhombus pin.
-std::vector<Scenario> paper_scenarios();
+/// (a) nut, (b) locator, (c) bolt, (d) rhombus pin. What stands where is drawn by lot, another lot
+/// for each `variant`.
+std::vector<Scenario> paper_scenarios(std::uint64_t variant = 0);
 
 /// `count` risers and pins side by side on a square, the pins in the risers' holes, with the moving
 /// element of scenario (b).

@@ -1,0 +1,221 @@
+#include "error_study.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "known_pair.h"
+#include "methods.h"
+#include "random_geometry.h"
+
+namespace dowel::bench {
+
+namespace {
+
+constexpr double kLeastGap_mm = 1.0e-7;
+constexpr double kLargestGap_mm = 1.0;
+constexpr double kReach_mm = 300.0;  // of the pairs' places in the world
+
+struct Setting {
+  std::string method;
+  double facet_error_mm = 0.1;
+  double tolerance_mm = 0.0;
+  std::function<std::unique_ptr<Checker>()> make;
+};
+
+Setting dowel_setting(const char* name, DowelMode mode, double facet_error_mm) {
+  return {name, facet_error_mm, mode.tolerance_mm, [mode] { return make_dowel(mode); }};
+}
+
+/// Each method over facet errors; dowel over tolerances as well.
+std::vector<Setting> settings() {
+  constexpr std::array kFacetErrors_mm{1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005};
+  constexpr std::array kTolerances_mm{0.1, 0.01, 1.0e-3, 1.0e-4, 1.0e-5, 1.0e-6};
+  constexpr double kSmall_mm = 1.0e-4;  // where facets are to show their own error
+  std::vector<Setting> result;
+  for (const double error : kFacetErrors_mm) {
+    result.push_back(dowel_setting("dowel exact", {.tolerance_mm = 1.0e-3}, error));
+  }
+  for (const double tolerance : kTolerances_mm) {
+    result.push_back(dowel_setting("dowel exact, by tolerance", {.tolerance_mm = tolerance}, 0.1));
+  }
+  for (const double error : kFacetErrors_mm) {
+    result.push_back(dowel_setting("dowel facets",
+                                   {.tolerance_mm = kSmall_mm, .knows_facets_alone = true}, error));
+  }
+  for (const double error : kFacetErrors_mm) {
+    result.push_back(dowel_setting("dowel paper holes",
+                                   {.tolerance_mm = 1.0e-3, .holes = HoleMode::Paper}, error));
+  }
+  for (const Method& method : peers()) {
+    if (method.stride != 1) continue;  // too slow to be run on all facets
+    for (const double error : kFacetErrors_mm) {
+      result.push_back({std::string(method.name), error, 0.0, method.make});
+    }
+  }
+  return result;
+}
+
+struct Path {
+  std::vector<Pose> poses;
+  std::vector<double> gaps_mm;
+};
+
+Path path_of(const KnownPair& pair, const Pose& X_WS, std::size_t count) {
+  Path path;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    path.gaps_mm.push_back(swept_gap_mm(s, kLeastGap_mm, kLargestGap_mm));
+    path.poses.push_back(X_WS * pair.X_SM(path.gaps_mm.back(), 5.0 * s));
+  }
+  return path;
+}
+
+void judge(const KnownPair& pair, const Run& run, const Path& path, ErrorPoint& point) {
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const double gap = path.gaps_mm[i];
+    ++point.judged;
+    const bool hit = run.answers[i].hit;
+    if (hit != (gap < 0.0)) {
+      ++point.wrong;
+      double& off_mm = hit ? point.gap_hit_mm : point.depth_missed_mm;
+      off_mm = std::max(off_mm, std::abs(gap));
+    }
+    const double beyond = gap + point.tolerance_mm;  // negative: interference for the method
+    if (hit != (beyond < 0.0) && std::abs(beyond) > point.off_threshold_mm) {
+      point.off_threshold_mm = std::abs(beyond);
+      point.off_on = pair.name;
+    }
+  }
+}
+
+/// What the method says of how far or how deep, where it says so.
+void judge_measures(Checker& checker, const Path& path, ErrorPoint& point) {
+  for (std::size_t i = 0; i < path.poses.size(); i += 5) {
+    if (const auto gap = checker.measured_gap_mm(path.poses[i])) {
+      point.measured_off_mm = std::max(point.measured_off_mm, std::abs(*gap - path.gaps_mm[i]));
+    }
+  }
+}
+
+/// All settings of one fineness on one pair, taking turns.
+void run_pair(const KnownPair& pair, const Path& path, const Pose& X_WS,
+              std::span<const Setting> settings, std::span<ErrorPoint> points, std::size_t rounds) {
+  std::vector<std::unique_ptr<Checker>> checkers;
+  std::vector<Run> runs;
+  for (const Setting& setting : settings) {
+    checkers.push_back(setting.make());
+    checkers.back()->add(placed(pair.still, X_WS));
+    checkers.back()->set_moving(pair.moving);
+    checkers.back()->finish();
+    runs.push_back(blank_run(path.poses.size()));
+  }
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      run_timed(*checkers[i], path.poses, runs[i]);
+      run_batch(*checkers[i], path.poses, runs[i]);
+    }
+  }
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    judge(pair, runs[i], path, points[i]);
+    judge_measures(*checkers[i], path, points[i]);
+    points[i].mean_us += runs[i].batch_mean_us;  // summed here, divided by the pairs at the end
+  }
+}
+
+std::string tolerance_text(double tolerance_mm) {
+  return tolerance_mm > 0.0 ? text(tolerance_mm) : "none";
+}
+
+}  // namespace
+
+std::vector<ErrorPoint> run_error_study(const Plan& plan) {
+  std::vector<Setting> all = settings();
+  std::vector<ErrorPoint> points;
+  points.reserve(all.size());
+  // Those of one fineness side by side, since they share elements.
+  std::ranges::stable_sort(all, std::ranges::greater(), &Setting::facet_error_mm);
+  for (const Setting& setting : all) {
+    points.emplace_back();
+    points.back().method = setting.method;
+    points.back().facet_error_mm = setting.facet_error_mm;
+    points.back().tolerance_mm = setting.tolerance_mm;
+  }
+  const std::size_t poses = std::max<std::size_t>(plan.poses / 4, 24);
+  for (std::size_t first = 0; first < all.size();) {
+    std::size_t count = 0;
+    const double error = all[first].facet_error_mm;
+    while (first + count < all.size() && all[first + count].facet_error_mm == error) ++count;
+    testing::RandomGeometry random(71);
+    const std::vector<KnownPair> pairs = known_pairs({.facet_error_mm = error});
+    for (const KnownPair& pair : pairs) {
+      const Pose X_WS = random.pose(kReach_mm);
+      run_pair(pair, path_of(pair, X_WS, poses), X_WS, std::span(all).subspan(first, count),
+               std::span(points).subspan(first, count), plan.rounds);
+    }
+    for (std::size_t i = first; i < first + count; ++i) {
+      points[i].mean_us /= static_cast<double>(pairs.size());
+    }
+    first += count;
+  }
+  std::ranges::stable_sort(points, {}, &ErrorPoint::method);
+  return points;
+}
+
+std::vector<Table> error_tables(const std::vector<ErrorPoint>& points) {
+  Table table{
+      "Run time against error",
+      "Pairs whose gap or depth is known exactly (a pin in its hole, cylinders on a plane, beside "
+      "and across a post, a ball on a plane, a cone in its countersink, a block and a drilled "
+      "riser "
+      "on a plane) go from 1 mm apart to 1 mm deep and back, turning, in random places. Facet "
+      "error and tolerance in mm; mean time of a check in microseconds; wrong answers to \"is "
+      "there interference?\"; the largest gap called interference and the largest depth called "
+      "none, in mm; the larger of the two measured from the method's own threshold (dowel's is its "
+      "tolerance, the others' is 0), with the pair; the largest error of the gap or depth that the "
+      "method measures, in mm.",
+      {"method", "facet error", "tolerance", "time", "wrong", "gap hit", "depth missed",
+       "off its threshold", "on", "measure off by"},
+      {}};
+  for (const ErrorPoint& p : points) {
+    table.rows.push_back({p.method, text(p.facet_error_mm), tolerance_text(p.tolerance_mm),
+                          text(p.mean_us),
+                          std::to_string(p.wrong) + " of " + std::to_string(p.judged),
+                          text(p.gap_hit_mm), text(p.depth_missed_mm), text(p.off_threshold_mm),
+                          p.off_on, p.measured_off_mm > 0.0 ? text(p.measured_off_mm) : "–"});
+  }
+  return {table};
+}
+
+Chart error_chart(const std::vector<ErrorPoint>& points) {
+  Chart chart;
+  chart.title = "What being right costs: run time against error";
+  chart.subtitle =
+      "Along a curve: facet error 1 to 0.005 mm; of \"by tolerance\": tolerance 0.1 to 10⁻⁶ mm";
+  chart.x.label = "largest gap or depth that was judged wrong, mm";
+  chart.y.label = "mean time of a check, µs";
+  std::vector<Mark> all;
+  for (const ErrorPoint& p : points) {
+    if (chart.series.empty() || chart.series.back().name != p.method) {
+      chart.series.push_back({p.method, {}, SeriesStyle::Line});
+    }
+    // Nothing wrong: no further off than the smallest gap that was asked about.
+    chart.series.back().marks.push_back({std::max(p.off_mm(), kLeastGap_mm), p.mean_us, {}, 0.0});
+    all.push_back(chart.series.back().marks.back());
+  }
+  for (Series& series : chart.series) {
+    std::ranges::sort(series.marks, std::ranges::greater(), &Mark::x);
+  }
+  // From the largest error on: what is not slower than anything as right.
+  std::ranges::sort(
+      all, [](const Mark& a, const Mark& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  Series front{"not beaten in both", {}, SeriesStyle::Front};
+  for (const Mark& mark : all) {
+    if (front.marks.empty() || mark.y < front.marks.back().y) front.marks.push_back(mark);
+  }
+  chart.series.push_back(front);
+  return chart;
+}
+
+}  // namespace dowel::bench
