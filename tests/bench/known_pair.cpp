@@ -48,7 +48,7 @@ class PairMaker {
     // Far enough below the hole's radius for all gaps asked about, at any scale.
     const double clearance = 1.2;
     const double hole = 6.0 * k_ + clearance;
-    FacetedSolid plate = testing::plate_with_holes({60.0 * k_, 60.0 * k_, 20.0 * k_},
+    FacetedSolid plate = testing::plate_with_holes({60.0 * k_ + 4.0, 60.0 * k_ + 4.0, 20.0 * k_},
                                                    {{0.0, 0.0, hole}}, segments(6.0, error_mm_));
     return {"pin in hole", round(6.0, 30.0), made("plate", std::move(plate)),
             [clearance, k = k_](double gap, double turn) {

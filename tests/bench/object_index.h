@@ -34,7 +34,8 @@ struct IndexKind {
 };
 
 /// dowel's layered projection model, a look at every box, an R-tree (Boost), and of FCL, where it
-/// was found, a dynamic AABB tree and sweep and prune.
+/// was found, a dynamic AABB tree and sweep and prune (its simple kind: the
+/// other one crashes when objects come one by one).
 std::vector<IndexKind> index_kinds();
 std::unique_ptr<ObjectIndex> make_fcl_tree();
 std::unique_ptr<ObjectIndex> make_fcl_sweep_and_prune();

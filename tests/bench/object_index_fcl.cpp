@@ -1,7 +1,7 @@
 #include <memory>
 #include <vector>
 
-#include <fcl/broadphase/broadphase_SaP.h>
+#include <fcl/broadphase/broadphase_SSaP.h>
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/narrowphase/collision_object.h>
@@ -20,18 +20,15 @@ class FclIndex : public ObjectIndex {
   void insert(const Aabb& box) override {
     objects_.push_back(object(box));
     manager_.registerObject(objects_.back().get());
-    is_ready_ = false;
   }
 
   void remove_last() override {
     manager_.unregisterObject(objects_.back().get());
     objects_.pop_back();
-    is_ready_ = false;
   }
 
   std::size_t count_overlaps(const Aabb& box) override {
-    if (!is_ready_) manager_.setup();
-    is_ready_ = true;
+    manager_.setup();  // sorts or balances what has changed
     std::size_t count = 0;
     manager_.collide(object(box).get(), &count, [](Object*, Object*, void* data) {
       ++*static_cast<std::size_t*>(data);
@@ -53,7 +50,6 @@ class FclIndex : public ObjectIndex {
 
   Manager manager_;
   std::vector<std::unique_ptr<Object>> objects_;
-  bool is_ready_ = false;
 };
 
 }  // namespace
@@ -63,7 +59,7 @@ std::unique_ptr<ObjectIndex> make_fcl_tree() {
 }
 
 std::unique_ptr<ObjectIndex> make_fcl_sweep_and_prune() {
-  return std::make_unique<FclIndex<fcl::SaPCollisionManager<double>>>();
+  return std::make_unique<FclIndex<fcl::SSaPCollisionManager<double>>>();
 }
 
 }  // namespace dowel::bench
