@@ -11,6 +11,7 @@
 #include "error_study.h"
 #include "judged_moves.h"
 #include "object_index.h"
+#include "paper_tables.h"
 #include "report.h"
 #include "skips.h"
 #include "stability.h"
@@ -92,6 +93,7 @@ Results run_studies(const Arguments& given) {
   Results results;
   for (const Method& method : methods) results.methods.emplace_back(method.name);
   if (is_wanted(given.studies, "moves")) run_moves(given, methods, results);
+  results.tables = paper_tables(results);
   if (is_wanted(given.studies, "growth") && !methods.empty()) run_growth(given, methods, results);
   if (is_wanted(given.studies, "judged")) {
     std::fprintf(stderr, "verdicts of many moves\n");

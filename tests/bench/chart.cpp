@@ -182,18 +182,19 @@ class Drawing {
   }
 
   void draw_axes() {
-    for (double decade = y_.low; decade <= y_.high; decade += 1.0) {
+    for (int decade = static_cast<int>(y_.low); decade <= static_cast<int>(y_.high); ++decade) {
       const double y = y_.at(std::pow(10.0, decade));
       line("grid", kLeft, y, kRight, y);
-      text("tick", kLeft - 10.0, y + 4.5, "end", power_of_ten(static_cast<int>(decade)));
+      text("tick", kLeft - 10.0, y + 4.5, "end", power_of_ten(decade));
     }
     if (chart_.categories.empty()) {
       const bool is_crowded = x_.high - x_.low > 9.0;
-      for (double decade = x_.low; decade <= x_.high; decade += 1.0) {
+      const int first = static_cast<int>(x_.low);
+      for (int decade = first; decade <= static_cast<int>(x_.high); ++decade) {
         const double x = x_.at(std::pow(10.0, decade));
         line("grid", x, kTop, x, kBottom);
-        if (is_crowded && std::fmod(decade - x_.low, 2.0) != 0.0) continue;
-        text("tick", x, kBottom + 20.0, "middle", power_of_ten(static_cast<int>(decade)));
+        if (is_crowded && (decade - first) % 2 != 0) continue;
+        text("tick", x, kBottom + 20.0, "middle", power_of_ten(decade));
       }
       draw_minor_ticks();
     } else {
@@ -233,24 +234,26 @@ class Drawing {
       out_ += "<path class=\"" + fill + "\" d=\"" + path + "\"/>\n";
     };
     const auto at = [&](double dx, double dy) { return number(x + dx) + ' ' + number(y + dy); };
-    constexpr double k = kMark;
     switch (index % 5) {
       case 0:
         out_ += "<circle class=\"" + fill + "\" cx=\"" + number(x) + "\" cy=\"" + number(y) +
-                "\" r=\"" + number(k) + "\"/>\n";
+                "\" r=\"" + number(kMark) + "\"/>\n";
         break;
       case 1:
-        shape("M" + at(-k, -k) + "L" + at(k, -k) + "L" + at(k, k) + "L" + at(-k, k) + "Z");
+        shape("M" + at(-kMark, -kMark) + "L" + at(kMark, -kMark) + "L" + at(kMark, kMark) + "L" +
+              at(-kMark, kMark) + "Z");
         break;
       case 2:
-        shape("M" + at(0, -1.3 * k) + "L" + at(1.2 * k, k) + "L" + at(-1.2 * k, k) + "Z");
+        shape("M" + at(0, -1.3 * kMark) + "L" + at(1.2 * kMark, kMark) + "L" +
+              at(-1.2 * kMark, kMark) + "Z");
         break;
       case 3:
-        shape("M" + at(0, -1.4 * k) + "L" + at(1.4 * k, 0) + "L" + at(0, 1.4 * k) + "L" +
-              at(-1.4 * k, 0) + "Z");
+        shape("M" + at(0, -1.4 * kMark) + "L" + at(1.4 * kMark, 0) + "L" + at(0, 1.4 * kMark) +
+              "L" + at(-1.4 * kMark, 0) + "Z");
         break;
       default:
-        shape("M" + at(0, 1.3 * k) + "L" + at(1.2 * k, -k) + "L" + at(-1.2 * k, -k) + "Z");
+        shape("M" + at(0, 1.3 * kMark) + "L" + at(1.2 * kMark, -kMark) + "L" +
+              at(-1.2 * kMark, -kMark) + "Z");
     }
   }
 
@@ -259,7 +262,8 @@ class Drawing {
     std::string path;
     for (const Mark& mark : series.marks) {
       if (!is_shown(mark)) continue;
-      path += (path.empty() ? "M" : "L") + number(x_.at(mark.x)) + ' ' + number(y_.at(mark.y));
+      path += path.empty() ? 'M' : 'L';
+      path += number(x_.at(mark.x)) + ' ' + number(y_.at(mark.y));
     }
     if (series.style == SeriesStyle::Line && !path.empty()) {
       out_ += "<path class=\"line " + stroke + "\" d=\"" + path + "\"/>\n";

@@ -18,6 +18,8 @@ struct ErrorPoint {
   double facet_error_mm = 0.0;
   double tolerance_mm = 0.0;  ///< dowel's; 0: the method has none
   double mean_us = 0.0;
+  double slowest_us = 0.0;  ///< mean of the pair that took longest
+  std::string slowest_on;
   std::size_t judged = 0;
   std::size_t wrong = 0;          ///< said interference at a gap, or none at a depth
   double gap_hit_mm = 0.0;        ///< largest gap that it called interference

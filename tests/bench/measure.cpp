@@ -229,11 +229,13 @@ SizePoint run_size(double size_mm, const Method& method, const Plan& plan) {
   for (const Placed& placed : scenario.elements) checker->add(placed);
   checker->set_moving(scenario.moving);
   checker->finish();
+  double pin_top_mm = 0.0;
+  for (const Placed& p : scenario.elements) pin_top_mm = std::max(pin_top_mm, p.box_W.max.z());
   std::vector<Pose> poses;
   for (const Pose& pose : field_path(scenario, plan.poses)) {
-    // Over the tops all the way: what it would sink by is not the question here.
+    // Above the pins, which stand out of the risers, and not down between them.
     Eigen::Vector3d p = pose.translation();
-    p.z() = std::max(p.z(), scenario.stage.max.z() + 0.05);
+    p.z() = pin_top_mm + std::max(p.z() - scenario.stage.max.z(), 0.05);
     poses.emplace_back(pose.rotation(), p);
   }
   poses = every(poses, method.stride);

@@ -104,6 +104,7 @@ double fastest_us(std::size_t rounds, const Work& work) {
 IndexCost measure(const IndexKind& kind, const Scenario& scene, const std::vector<Pose>& poses,
                   std::size_t rounds) {
   std::vector<Aabb> asked;
+  asked.reserve(poses.size());
   for (const Pose& pose : poses) asked.push_back(box_at(pose, scene.moving->box));
   const std::unique_ptr<ObjectIndex> index = kind.make();
   const std::size_t count = scene.elements.size();

@@ -250,8 +250,8 @@ void write_scale(std::ostream& out, const Results& results) {
 void write_sizes(std::ostream& out, const Results& results) {
   if (results.sizes.empty()) return;
   Table table{"Size of the moving element",
-              "A cube of this edge, in mm, over the tops of 1,000 elements, 0.05 to 1 mm above "
-              "them: mean microseconds of a move.",
+              "A cube of this edge, in mm, slides 0.05 to 1 mm above the highest of 1,000 "
+              "elements: mean microseconds of a move.",
               {"method"},
               {}};
   for (const std::string& method : results.methods) {
@@ -388,7 +388,7 @@ Chart growth_chart(const Results& results) {
 Chart size_chart(const Results& results) {
   Chart chart;
   chart.title = "Size of the moving element";
-  chart.subtitle = "A cube close over the tops of 1,000 elements: mean";
+  chart.subtitle = "A cube slides close above the highest of 1,000 elements: mean";
   chart.x.label = "edge of the moving cube, mm";
   chart.y.label = "time of a check, µs";
   for (const std::string& method : results.methods) {
