@@ -34,6 +34,7 @@ std::vector<Setting> settings() {
   constexpr std::array kTolerances_mm{0.1, 0.01, 1.0e-3, 1.0e-4, 1.0e-5, 1.0e-6};
   constexpr double kSmall_mm = 1.0e-4;  // where facets are to show their own error
   std::vector<Setting> result;
+  result.reserve(16 * kFacetErrors_mm.size());
   for (const double error : kFacetErrors_mm) {
     result.push_back(dowel_setting("dowel exact", {.tolerance_mm = 1.0e-3}, error));
   }
@@ -137,6 +138,7 @@ std::string tolerance_text(double tolerance_mm) {
 std::vector<ErrorPoint> run_error_study(const Plan& plan) {
   std::vector<Setting> all = settings();
   std::vector<std::string> order;  // of the methods, as they were named
+  order.reserve(all.size());
   for (const Setting& setting : all) order.push_back(setting.method);
   std::vector<ErrorPoint> points;
   points.reserve(all.size());

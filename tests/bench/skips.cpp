@@ -12,10 +12,10 @@ namespace dowel::bench {
 namespace {
 
 /// Pairs by the layer that rejects them when each is asked in order.
-enum Layer : std::uint8_t { Heights, Columns, Silhouettes, Type1, Type2, Type3, Left, kLayers };
+enum Layer : std::uint8_t { Heights, Columns, Silhouettes, Type1, Type2, Type3, Left };
 
 struct Skips {
-  std::array<std::size_t, kLayers> pairs{};
+  std::array<std::size_t, Left + 1> pairs{};
   std::size_t poses = 0;
   std::size_t moves_without_test = 0;
 };
@@ -70,9 +70,9 @@ void count_untested(Checker& checker, const Motion& motion, Skips& skips) {
 
 /// A check in one of dowel's ways.
 struct Way {
-  const char* name;
+  const char* name = "";
   DowelMode mode;
-  std::size_t most_poses;
+  std::size_t most_poses = 0;
 };
 
 const std::array<Way, 4>& ways() {

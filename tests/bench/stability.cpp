@@ -286,9 +286,9 @@ class Tables {
     Eigen::Matrix<Scalar, 4, 4> step = Eigen::Matrix<Scalar, 4, 4>::Identity();
     step.template topLeftCorner<3, 3>() = about.rotation_matrix().template cast<Scalar>();
     step.template topRightCorner<3, 1>() = about.translation().template cast<Scalar>();
-    Eigen::Matrix<Scalar, 4, 4> X = Eigen::Matrix<Scalar, 4, 4>::Identity();
-    for (std::size_t i = 0; i < steps; ++i) X = X * step;
-    const Eigen::Matrix<Scalar, 4, 1> p = X * lever.homogeneous().template cast<Scalar>();
+    Eigen::Matrix<Scalar, 4, 4> now = Eigen::Matrix<Scalar, 4, 4>::Identity();
+    for (std::size_t i = 0; i < steps; ++i) now = now * step;
+    const Eigen::Matrix<Scalar, 4, 1> p = now * lever.homogeneous().template cast<Scalar>();
     return p.template head<3>().template cast<double>();
   }
 
@@ -302,9 +302,9 @@ class Tables {
     for (std::size_t steps = 10'000; steps <= most; steps *= 10) {
       const double pose =
           drift_mm(steps, [](const Pose& about, std::size_t count, const Eigen::Vector3d& lever) {
-            Pose X;
-            for (std::size_t i = 0; i < count; ++i) X = X * about;
-            return Eigen::Vector3d(X * lever);
+            Pose pose_now;
+            for (std::size_t i = 0; i < count; ++i) pose_now = pose_now * about;
+            return Eigen::Vector3d(pose_now * lever);
           });
       table.rows.push_back({std::to_string(steps), text(pose),
                             text(drift_mm(steps, by_matrices<double>)),
