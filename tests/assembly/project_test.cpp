@@ -126,6 +126,40 @@ TEST_CASE("a project is found again in its file to the bit") {
   CHECK_THROWS_AS(project.solid("T/other"), Error);
 }
 
+TEST_CASE("a copy of an element keeps what its maker states of it") {
+  ProjectElement plate = testing::plate_element();
+  plate.element.role = "base plate";
+  plate.element.description = "a plate";
+  plate.element.material = "steel C45";
+  plate.element.dimensions_by = "like nothing";
+  plate.element.density_kg_per_m3 = 7850.0;
+  plate.element.bolt_circles.push_back(
+      {{1, 2, 3}, -Eigen::Vector3d::UnitZ(), 80.0, 12.0, {"A1", "B1", "C1"}});
+  plate.element.features[0].use = "node";
+  plate.element.features[0].thread = "M12";
+  plate.element.features[0].thread_is_guess = true;
+  plate.element.features[0].fit = "H7";
+  const testing::TemporaryFolder folder;
+  Project::create(folder / "a.dwp")
+      .commit("place", with_instance({}, "P", plate.element.name, Pose()),
+              std::vector<ProjectElement>{plate});
+  const Project project = Project::open(folder / "a.dwp");
+  const dowel::Element& copy = *project.find_element(plate.element.name);
+  CHECK(copy.role == "base plate");
+  CHECK(copy.description == "a plate");
+  CHECK(copy.material == "steel C45");
+  CHECK(copy.dimensions_by == "like nothing");
+  CHECK(copy.density_kg_per_m3 == 7850.0);
+  REQUIRE(copy.bolt_circles.size() == 1);
+  CHECK(copy.bolt_circles[0].center == Eigen::Vector3d(1, 2, 3));
+  CHECK(copy.bolt_circles[0].holes == std::vector<std::string>{"A1", "B1", "C1"});
+  CHECK(copy.features[0].use == "node");
+  CHECK(copy.features[0].thread == "M12");
+  CHECK(copy.features[0].thread_is_guess);
+  CHECK(copy.features[0].fit == "H7");
+  CHECK(copy.features[1].use.empty());
+}
+
 TEST_CASE("undo and redo lead back to identical rows, also after reopening", "[property]") {
   const testing::TemporaryFolder folder;
   const auto file = folder / "a.dwp";
