@@ -51,6 +51,10 @@ class PlacedBodies {
 
   std::vector<Touch> check_all(double tolerance_mm);
 
+  /// The verdict of two bodies as they are placed, whatever was asked before: witnesses and bounds of
+  /// the other checks may hang on that.
+  PairVerdict pair(const std::string& a, const std::string& b, double tolerance_mm);
+
   /// Forgets an element that no body uses, so that it is loaded anew.
   void forget(const std::string& element);
 

@@ -438,11 +438,16 @@ void ProjectDatabase::write_rows(const ProjectRows& before, const ProjectRows& a
   for (const Instance& instance : before.instances) {
     erase("DELETE FROM instance WHERE number = ?", instance.number);
   }
+  for (const SettingRow& row : before.settings) {
+    SQLite::Statement erase_setting(database_, "DELETE FROM setting WHERE name = ?");
+    erase_setting.bind(1, row.name);
+    erase_setting.exec();
+  }
   for (const SettingRow& row : after.settings) {
-    SQLite::Statement update(database_, "UPDATE setting SET value = ? WHERE name = ?");
-    update.bind(1, row.value);
-    update.bind(2, row.name);
-    update.exec();
+    SQLite::Statement insert(database_, "INSERT INTO setting VALUES (?, ?)");
+    insert.bind(1, row.name);
+    insert.bind(2, row.value);
+    insert.exec();
   }
   for (const Instance& instance : after.instances) {
     SQLite::Statement insert(database_,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "design_rows.h"
 #include "dowel/assembly/names.h"
 #include "dowel/kernel/error.h"
 
@@ -36,6 +37,15 @@ void add_difference(const Map& from, const Map& to, std::vector<Row>& before,
       ++b;
     }
   }
+}
+
+std::map<std::string, SettingRow> by_name(std::vector<SettingRow> rows) {
+  std::map<std::string, SettingRow> result;
+  for (SettingRow& row : rows) {
+    std::string name = row.name;
+    result.emplace(std::move(name), std::move(row));
+  }
+  return result;
 }
 
 [[noreturn]] void fail_to_fit(const std::string& row) {
@@ -69,8 +79,10 @@ std::string number_text(double value) {
 }
 
 std::vector<SettingRow> settings_of(const ProjectState& state) {
-  return {{kModeSetting, std::string(to_string(state.mode))},
-          {kToleranceSetting, number_text(state.tolerance_mm)}};
+  std::vector<SettingRow> rows{{kModeSetting, std::string(to_string(state.mode))},
+                               {kToleranceSetting, number_text(state.tolerance_mm)}};
+  for (SettingRow& row : rows_of(state.design)) rows.push_back(std::move(row));
+  return rows;
 }
 
 void apply_setting(ProjectState& state, const SettingRow& row) {
@@ -87,6 +99,8 @@ void apply_setting(ProjectState& state, const SettingRow& row) {
       state.tolerance_mm = value;
       return;
     }
+  } else if (put_row(state.design, row)) {
+    return;
   }
   throw Error(ErrorCode::FileMalformed,
               "setting \"" + row.name + "\" has the unknown value \"" + row.value + "\"");
@@ -94,13 +108,8 @@ void apply_setting(ProjectState& state, const SettingRow& row) {
 
 ProjectChange difference(const ProjectState& from, const ProjectState& to) {
   ProjectChange change;
-  const std::vector<SettingRow> old_settings = settings_of(from);
-  const std::vector<SettingRow> new_settings = settings_of(to);
-  for (std::size_t i = 0; i < old_settings.size(); ++i) {
-    if (old_settings[i] == new_settings[i]) continue;
-    change.before.settings.push_back(old_settings[i]);
-    change.after.settings.push_back(new_settings[i]);
-  }
+  add_difference(by_name(settings_of(from)), by_name(settings_of(to)), change.before.settings,
+                 change.after.settings);
   add_difference(from.instances, to.instances, change.before.instances, change.after.instances);
   add_difference(from.mates, to.mates, change.before.mates, change.after.mates);
   return change;
@@ -113,6 +122,7 @@ ProjectState changed(const ProjectState& state, const ProjectChange& change) {
     if (std::ranges::find(present, row) == present.end()) {
       fail_to_fit("setting \"" + row.name + "\" is not as the journal left it");
     }
+    take_row(next.design, row);
   }
   for (const Mate& mate : change.before.mates) {
     take(next.mates, mate.number, mate, "mate " + std::to_string(mate.number));

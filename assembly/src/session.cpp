@@ -160,6 +160,7 @@ std::vector<Mate> Session::remove(std::string_view name, std::string_view comman
     }
   }
   next.instances.erase(known);
+  next.design.forget(known);
   impl_->commit(command, next);
   return gone;
 }
@@ -183,6 +184,12 @@ void Session::set_tolerance(double tolerance_mm, std::string_view command) {
   }
   ProjectState next = state();
   next.tolerance_mm = tolerance_mm;
+  impl_->commit(command, next);
+}
+
+void Session::set_design(const FixtureDesign& design, std::string_view command) {
+  ProjectState next = state();
+  next.design = design;
   impl_->commit(command, next);
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dowel/assembly/fixture_design.h"
 #include "dowel/assembly/mate.h"
 #include "dowel/catalog/element.h"
 #include "dowel/kernel/faceted_solid.h"
@@ -70,6 +71,7 @@ struct ProjectState {
   double tolerance_mm = kDefaultTolerance_mm;
   std::map<std::string, Instance, std::less<>> instances;  ///< by name
   std::map<std::uint32_t, Mate> mates;                     ///< by number
+  FixtureDesign design;
 
   const Instance* find(std::string_view name) const;
   /// In order of placing.

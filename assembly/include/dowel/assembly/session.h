@@ -240,6 +240,8 @@ class Session {
   void set_mode(CheckMode mode, std::string_view command);
   /// Throws Error{InvalidInput} outside [kMinTolerance_mm, kMaxTolerance_mm].
   void set_tolerance(double tolerance_mm, std::string_view command);
+  /// Roles, forces, loads, limits, overrides and waivers.
+  void set_design(const FixtureDesign& design, std::string_view command);
   std::vector<std::string> undo(std::size_t count);
   std::vector<std::string> redo(std::size_t count);
 

@@ -1,0 +1,13 @@
+# Writes the rules as C++: cmake -D FOLDER=... -D OUTPUT=... -P embed.cmake
+file(GLOB files RELATIVE ${FOLDER} ${FOLDER}/*/*.sql)
+list(SORT files)
+set(code "#include \"shipped_rules.h\"\n\n#include <array>\n\nnamespace dowel {\nnamespace {\n\n")
+string(APPEND code "constexpr std::array kRules{\n")
+foreach(file ${files})
+  file(READ ${FOLDER}/${file} text)
+  get_filename_component(family ${file} DIRECTORY)
+  string(APPEND code "    ShippedRule{\"${family}\", \"${file}\", R\"sql(${text})sql\"},\n")
+endforeach()
+string(APPEND code "};\n\n}  // namespace\n\n")
+string(APPEND code "const std::span<const ShippedRule> kShippedRules = kRules;\n\n}  // namespace dowel\n")
+file(WRITE ${OUTPUT} "${code}")

@@ -1,0 +1,27 @@
+-- id: STK-05
+-- severity: warning
+-- title: A part bears on most of its foot
+-- message: {subject}: {bearing_mm2} of {foot_mm2} mm2 of its foot bear, expected 70 %
+-- reference: bearing area of 70 %
+WITH foot(instance, z_mm, foot_mm2) AS (
+  SELECT f.instance, f.z_mm, f.area_mm2
+  FROM features AS f
+  JOIN instances AS i ON i.instance = f.instance
+  WHERE f.kind = 'face'
+    AND f.dz < -0.999
+    AND i.role IN ('riser', 'support', 'locator')
+    AND (f.use IN ('seat', 'bottom')
+         OR (f.z_mm <= i.min_z_mm + 0.01
+             AND NOT EXISTS (SELECT 1 FROM features AS s
+                             WHERE s.instance = f.instance AND s.use IN ('seat', 'bottom'))))),
+bearing(instance, z_mm, area_mm2) AS (
+  SELECT a, z_mm, area_mm2 FROM seats WHERE nz < -0.999
+  UNION ALL
+  SELECT b, z_mm, area_mm2 FROM seats WHERE nz > 0.999)
+SELECT foot.instance AS subject,
+       coalesce(sum(b.area_mm2), 0) >= 0.7 * foot.foot_mm2 AS ok,
+       coalesce(sum(b.area_mm2), 0) AS bearing_mm2,
+       foot.foot_mm2
+FROM foot
+LEFT JOIN bearing AS b ON b.instance = foot.instance AND abs(b.z_mm - foot.z_mm) < 0.02
+GROUP BY foot.instance, foot.foot_mm2

@@ -1,0 +1,72 @@
+#pragma once
+
+// The facts as SQLite tables, and queries that can do nothing but read them. Internal to the rule
+// engine.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fact_table.h"
+
+namespace dowel {
+
+/// An answer to a query.
+struct FactAnswer {
+  std::vector<std::string> columns;
+  FactRows rows;
+};
+
+/// A query that cannot be prepared or breaks off.
+struct FactQueryError {
+  std::string message;     ///< in SQLite's words
+  std::size_t offset = 0;  ///< in the text, where SQLite tells
+  bool has_offset = false;
+};
+
+/// An in-memory database in which each fact table is a virtual table, filled by `rows` when a query
+/// first reads it. Queries may read the tables and call SQLite's functions that depend on their
+/// arguments alone; SQLite's authorizer refuses all else, and a query that takes too many steps is
+/// broken off.
+class FactDatabase {
+ public:
+  /// Index of the table in `fact_tables()`; the reference holds until the facts change.
+  using RowsOf = std::function<const FactRows&(std::size_t table)>;
+
+  explicit FactDatabase(RowsOf rows);
+  ~FactDatabase();
+  FactDatabase(const FactDatabase&) = delete;
+  FactDatabase& operator=(const FactDatabase&) = delete;
+
+  /// A prepared query, kept for another run.
+  class Query {
+   public:
+    ~Query();
+    Query(const Query&) = delete;
+    Query& operator=(const Query&) = delete;
+    /// Indices of the tables that it reads, by the authorizer.
+    const std::set<std::size_t>& reads() const;
+
+   private:
+    friend class FactDatabase;
+    struct Impl;
+    explicit Query(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+  };
+
+  /// Throws FactQueryError: bad SQL, unknown names, more than one statement, anything but reading.
+  std::unique_ptr<Query> prepare(const std::string& sql);
+  /// Throws FactQueryError, and what the making of facts throws.
+  FactAnswer run(Query& query);
+  /// Rows of a table are not what they were.
+  void forget(std::size_t table);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace dowel

@@ -1,0 +1,75 @@
+#pragma once
+
+// What facts are computed from: a session's state and what has been found out about it. Internal to
+// the rule engine.
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "axis_pair.h"
+#include "contact_patch.h"
+#include "dowel/assembly/fixture_analysis.h"
+#include "dowel/assembly/session.h"
+#include "fact_table.h"
+#include "fixture_contacts.h"
+#include "placed_bodies.h"
+
+namespace dowel {
+
+/// A joint by which one part holds another.
+struct Holding {
+  std::string held;
+  std::string by;
+  std::string kind;  ///< "thread", "screw", "press", "clamp", "fix"
+};
+
+class FactSource {
+ public:
+  explicit FactSource(Session& session);
+
+  /// Takes over the session's state. The inputs that changed since the last call.
+  unsigned update();
+
+  Session& session() { return session_; }
+  const ProjectState& state() const { return state_; }
+  const Element& element(const Instance& instance) { return session_.element(instance.element); }
+  std::shared_ptr<const FacetedSolid> solid(const std::string& element);
+  Role role(const Instance& instance) { return fixture_role(state_, instance, element(instance)); }
+
+  /// Pairs that are not clear at the project's tolerance, by name.
+  const std::vector<Touch>& touches();
+  /// Pairs that are nearer than `gap_mm`, touching ones included, by name.
+  const std::vector<Touch>& nearer_than(double gap_mm);
+  const std::vector<AxisPair>& axes();
+  const std::vector<Holding>& holdings();
+  /// One for each workpiece.
+  const std::vector<FixtureModel>& fixtures();
+
+  PlacedBodies& bodies() { return bodies_; }
+
+ private:
+  /// Pairs at one tolerance, and the state that they are of.
+  struct Pairs {
+    ProjectState of;
+    double tolerance_mm = 0.0;
+    std::optional<std::vector<Touch>> touches;
+  };
+  const std::vector<Touch>& updated(Pairs& pairs, double tolerance_mm);
+
+  Session& session_;
+  ProjectState state_;
+  bool has_state_ = false;
+  PlacedBodies bodies_;
+  std::map<std::string, std::shared_ptr<const FacetedSolid>> solids_;
+  Pairs touching_;
+  Pairs near_;
+  std::optional<std::vector<AxisPair>> axes_;
+  std::optional<std::vector<Holding>> holdings_;
+  std::optional<std::vector<FixtureModel>> fixtures_;
+};
+
+}  // namespace dowel

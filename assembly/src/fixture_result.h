@@ -1,0 +1,34 @@
+#pragma once
+
+// Steps of the fixture analysis that rules ask for one by one. Internal to both.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dowel/assembly/fixture_analysis.h"
+
+namespace dowel {
+
+/// Columns: a unit force at each locating point and each clamp contact.
+Eigen::MatrixXd all_wrenches(const FixtureModel& model);
+
+/// Nothing without clamp forces, or where the points do not settle the workpiece.
+std::optional<Seating> seating_of(const FixtureModel& model, const FixtureDesign& design);
+
+/// How far inside the polygon of the supports the line of a clamp's force meets their mean plane;
+/// not a number where it presses up or sideways (within 45 degrees), or there are no supports.
+double clamp_margin_mm(const FixtureModel& model, const WorkpieceContact& clamp);
+
+/// Errors are not a number where the locators do not settle the workpiece.
+std::vector<PointAnalysis> analyse_points(const FixtureModel& model, const FixtureDesign& design);
+
+std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const FixtureDesign& design);
+
+UnloadAnalysis analyse_unloading(
+    const FixtureModel& model, const ProjectState& state, Session& session,
+    const std::function<std::shared_ptr<const FacetedSolid>(const std::string&)>& solid);
+
+}  // namespace dowel
