@@ -8,6 +8,7 @@
 
 #include "console_commands.h"
 #include "dowel/assembly/suggest.h"
+#include "rule_desk.h"
 
 namespace dowel::tools {
 namespace {
@@ -120,9 +121,36 @@ constexpr std::array kCommands{
             true, run_bom},
     Command{"check", "", "Checks all pairs; exit code 1 where any interferes.", "check", true,
             run_check},
-    Command{"export", "FILE.step|.glb|.html|.png|.csv|.dowel",
+    Command{"role", "INST ROLE|off",
+            "Says what an instance is in the fixture, where its element's role is not it.",
+            "role WORK workpiece", true, run_role},
+    Command{"force", "CLAMP N|off", "Says with how many newtons a clamp presses.",
+            "force STRAP1 6000", true, run_force},
+    Command{"load", "NAME FX FY FZ at X Y Z [torque TX TY TZ] | NAME off",
+            "A cutting force on the workpiece, in N and mm.", "load MILL 400 0 -200 at 0 0 120",
+            true, run_load},
+    Command{"point", "NAME at X Y Z tolerance MM | NAME off",
+            "A point of the workpiece that has to be where it is meant to be.",
+            "point BORE at 20 0 110 tolerance 0.1", true, run_point},
+    Command{"accuracy", "INST MM|off", "Says how far off a locator may stand, plus or minus.",
+            "accuracy REST1 0.005", true, run_accuracy},
+    Command{"limit", "[NAME [NUMBER|off]]", "Tells or changes what rules compare with.",
+            "limit friction 0.2", true, run_limit},
+    Command{"analyse", "[FILE.svg]",
+            "How the workpiece is located, clamped and held; as a drawing, too.",
+            "analyse fixture.svg", true, run_analyse},
+    Command{
+        "rules",
+        "check [gate error|warning|info] [strict] [rules DIR] [format "
+        "text|json|sarif|junit|html] [to FILE] | list [rules DIR] | facts [TABLE] | explain "
+        "RULE [SUBJECT] [rules DIR] | waive RULE SUBJECT reason TEXT [by NAME] | unwaive RULE "
+        "SUBJECT | override RULE error|warning|info|off reason TEXT | restore RULE",
+        "Checks the design by rules; exit code 1 where findings reach the gate (error), 3 where "
+        "a rule is broken.",
+        "rules check gate warning", true, run_rules},
+    Command{"export", "FILE.step|.glb|.html|.png|.csv|.dowel [gate error|warning]",
             "Writes the assembly (STEP, GLB, 3D page, picture), the bill of materials or the "
-            "commands as a script.",
+            "commands as a script; with a gate, only where no rule has findings at it.",
             "export fixture.step", true, run_export},
     Command{"history", "", "The commands that made the project; undone ones are marked.", "history",
             true, run_history},
@@ -176,7 +204,15 @@ Console::Console() {
   adopt(Project());
 }
 
+Console::~Console() = default;
+
+RuleDesk& Console::rules() {
+  if (rules_ == nullptr) rules_ = std::make_unique<RuleDesk>(session());
+  return *rules_;
+}
+
 void Console::adopt(Project project) {
+  rules_.reset();
   session_ = std::make_unique<Session>(std::move(project));
   session_->use_catalog(catalog_);
 }

@@ -23,16 +23,24 @@ struct Reply {
   std::string text;     ///< for people, without the last line end; may be empty
   Json json = Json::object();  ///< further keys
   bool has_findings = false;   ///< exit code 1
+  bool has_bad_input = false;  ///< exit code 3, though what could be done was
   bool quits = false;
 };
+
+class RuleDesk;
 
 /// A project under the hands of a user, in a file or in memory, and the catalogue in use.
 class Console {
  public:
   /// Works in memory until `create`, `open` or `save`.
   Console();
+  ~Console();
+  Console(const Console&) = delete;
+  Console& operator=(const Console&) = delete;
 
   Session& session() { return *session_; }
+  /// Checks of rules on this project, kept from one to the next.
+  RuleDesk& rules();
 
   void create(const std::filesystem::path& file);
   void open(const std::filesystem::path& file);
@@ -50,6 +58,7 @@ class Console {
 
   std::shared_ptr<const Catalog> catalog_;
   std::unique_ptr<Session> session_;
+  std::unique_ptr<RuleDesk> rules_;  // of the session, so that it goes first
 };
 
 struct Command {

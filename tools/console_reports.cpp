@@ -10,6 +10,7 @@
 #include "dowel/assembly/suggest.h"
 #include "dowel/io/file.h"
 #include "element_json.h"
+#include "rule_desk.h"
 #include "table.h"
 
 namespace dowel::tools {
@@ -231,7 +232,7 @@ Reply run_check(Console& console, Arguments& arguments) {
 
 Reply run_export(Console& console, Arguments& arguments) {
   const std::string file = arguments.word("a file");
-  arguments.expect_end();
+  if (auto refusal = refused_by_gate(console, arguments)) return *refusal;
   arguments.located([&] { export_session(console.session(), file); });
   Reply reply;
   reply.text = file + ": written";

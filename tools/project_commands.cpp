@@ -75,6 +75,7 @@ void add_run(CLI::App& app, const SharedProjectOptions& project, int& exit_code)
 struct VerbOptions {
   std::vector<std::string> words;
   bool json = false;
+  std::vector<std::string> options;  ///< further words, given as options
   bool needs_project = true;
 };
 
@@ -85,11 +86,30 @@ void run_verb(const VerbOptions& options, const ProjectOptions& project, std::st
   std::vector<Word> words;
   if (!first.empty()) words.push_back({std::string(first), 1, false});
   for (const std::string& word : options.words) words.push_back({word, 1, false});
+  for (const std::string& word : options.options) words.push_back({word, 1, false});
   Console console;
   prepare(console, project, false);
   const Reply reply = console.run(words);
   print_reply(reply, words.front().text, 0, 0.0, {.json = options.json});
-  exit_code = reply.has_findings ? kFindings : kDone;
+  exit_code = reply.has_bad_input ? kBadInput : reply.has_findings ? kFindings : kDone;
+}
+
+/// Words of rules and export that may be written as options, too: `--gate error`.
+void add_word_options(CLI::App& verb, const std::shared_ptr<VerbOptions>& options) {
+  for (const std::string word : {"gate", "rules", "format", "to"}) {
+    verb.add_option_function<std::vector<std::string>>(
+            "--" + word,
+            [options, word](const std::vector<std::string>& values) {
+              for (const std::string& value : values) {
+                options->options.push_back(word);
+                options->options.push_back(value);
+              }
+            },
+            "As the word `" + word + "`")
+        ->allow_extra_args(false);
+  }
+  verb.add_flag_callback(
+      "--strict", [options] { options->options.emplace_back("strict"); }, "As the word `strict`");
 }
 
 /// A verb without a project would do its work and lose it.
@@ -105,6 +125,7 @@ void add_verb(CLI::App& app, const SharedProjectOptions& project, const Command&
   add_options(*verb, *project);
   verb->add_flag("--json", options->json, "One JSON object");
   verb->add_option("WORDS", options->words, std::string(command.arguments));
+  if (command.word == "rules" || command.word == "export") add_word_options(*verb, options);
   verb->group("On a project");
   verb->callback([options, project, word = command.word, &exit_code] {
     run_verb(*options, *project, word, exit_code);

@@ -100,6 +100,7 @@ class ScriptRun {
     const Reply reply = console_.run(words);
     ++done_;
     print_reply(reply, words.front().text, lines_.number(), seconds_since(start), options_);
+    if (reply.has_bad_input) exit_code_ = std::max(exit_code_, kBadInput);
     if (!reply.has_findings) return !reply.quits;
     exit_code_ = std::max(exit_code_, kFindings);
     if (words.front().text != "expect") return true;
