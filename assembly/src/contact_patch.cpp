@@ -203,9 +203,9 @@ Eigen::Vector3d normal_at(const FacetedSolid& a, const Pose& X_WA, const Faceted
 
 }  // namespace
 
-std::vector<ContactPatch> contact_patches(const FacetedSolid& a, const Pose& X_WA,
-                                          const FacetedSolid& b, const Pose& X_WB,
-                                          double tolerance_mm, const Eigen::Vector3d& witness_W) {
+std::vector<ContactPatch> plane_patches(const FacetedSolid& a, const Pose& X_WA,
+                                        const FacetedSolid& b, const Pose& X_WB,
+                                        double tolerance_mm) {
   const std::vector<PlanarFace> faces_A = planar_faces(a, X_WA);
   const std::vector<PlanarFace> faces_B = planar_faces(b, X_WB);
   struct SharedPlane {
@@ -242,6 +242,13 @@ std::vector<ContactPatch> contact_patches(const FacetedSolid& a, const Pose& X_W
     if (patch.area_mm2 > 0.0) patches.push_back(std::move(patch));
   }
   std::ranges::stable_sort(patches, std::ranges::greater{}, &ContactPatch::area_mm2);
+  return patches;
+}
+
+std::vector<ContactPatch> contact_patches(const FacetedSolid& a, const Pose& X_WA,
+                                          const FacetedSolid& b, const Pose& X_WB,
+                                          double tolerance_mm, const Eigen::Vector3d& witness_W) {
+  std::vector<ContactPatch> patches = plane_patches(a, X_WA, b, X_WB, tolerance_mm);
   if (patches.empty()) {
     patches.push_back({witness_W, normal_at(a, X_WA, b, X_WB, witness_W), 0.0, {}});
   }

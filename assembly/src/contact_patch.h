@@ -20,8 +20,12 @@ struct ContactPatch {
 };
 
 /// Patches of all pairs of planar faces that lie on each other within `tolerance_mm`, largest
-/// first; those of one plane are one patch. Where there is none, the point `witness_W`, with the
-/// normal of the faces there.
+/// first; those of one plane are one patch.
+std::vector<ContactPatch> plane_patches(const FacetedSolid& a, const Pose& X_WA,
+                                        const FacetedSolid& b, const Pose& X_WB,
+                                        double tolerance_mm);
+
+/// The same; where there is none, the point `witness_W`, with the normal of the faces there.
 std::vector<ContactPatch> contact_patches(const FacetedSolid& a, const Pose& X_WA,
                                           const FacetedSolid& b, const Pose& X_WB,
                                           double tolerance_mm, const Eigen::Vector3d& witness_W);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "dowel/assembly/fit.h"
+#include "fixture_result.h"
 
 namespace dowel {
 namespace {
@@ -164,12 +165,45 @@ const std::vector<FixtureModel>& FactSource::fixtures() {
   if (fixtures_) return *fixtures_;
   const FixtureInput input{
       state_, [this](const std::string& name) -> const Element& { return session_.element(name); },
-      [this](const std::string& name) { return solid(name); }, touches()};
+      [this](const std::string& name) { return solid(name); },
+      [this](const Touch& touch) -> const std::vector<ContactPatch>& {
+        return shared_planes(touch);
+      },
+      touches()};
   fixtures_.emplace();
   for (const Instance* workpiece : workpieces(input)) {
     fixtures_->push_back(fixture_model(input, *workpiece));
   }
   return *fixtures_;
+}
+
+const std::vector<ContactPatch>& FactSource::shared_planes(const Touch& touch) {
+  const Instance& a = *state_.find(touch.instance);
+  const Instance& b = *state_.find(touch.with);
+  SharedPlanes& known = shared_planes_[{a.name, b.name}];
+  if (known.a == a && known.b == b && known.tolerance_mm == state_.tolerance_mm) {
+    return known.patches;
+  }
+  known = {
+      a, b, state_.tolerance_mm,
+      plane_patches(*solid(a.element), a.X_WI, *solid(b.element), b.X_WI, state_.tolerance_mm)};
+  return known.patches;
+}
+
+const std::vector<UnloadAnalysis>& FactSource::unloadings() {
+  // The rest of the design does not matter.
+  if (unloadings_ && unloaded_.instances == state_.instances &&
+      unloaded_.tolerance_mm == state_.tolerance_mm &&
+      unloaded_.design.roles == state_.design.roles &&
+      unloaded_.design.limit("lift_mm") == state_.design.limit("lift_mm")) {
+    return *unloadings_;
+  }
+  unloadings_.emplace();
+  for (const FixtureModel& model : fixtures()) {
+    unloadings_->push_back(analyse_unloading(model, *this));
+  }
+  unloaded_ = state_;
+  return *unloadings_;
 }
 
 }  // namespace dowel

@@ -49,7 +49,12 @@ class FactSource {
   /// One for each workpiece.
   const std::vector<FixtureModel>& fixtures();
 
-  PlacedBodies& bodies() { return bodies_; }
+  /// Planes that the two of a contact share.
+  const std::vector<ContactPatch>& shared_planes(const Touch& touch);
+  /// Whether each workpiece comes out, in the order of `fixtures`.
+  const std::vector<UnloadAnalysis>& unloadings();
+
+  const PlacedBodies& bodies() const { return bodies_; }
 
  private:
   /// Pairs at one tolerance, and the state that they are of.
@@ -65,6 +70,16 @@ class FactSource {
   bool has_state_ = false;
   PlacedBodies bodies_;
   std::map<std::string, std::shared_ptr<const FacetedSolid>> solids_;
+  /// Kept while the two stay where they are.
+  struct SharedPlanes {
+    Instance a;
+    Instance b;
+    double tolerance_mm = 0.0;
+    std::vector<ContactPatch> patches;
+  };
+  std::map<std::pair<std::string, std::string>, SharedPlanes> shared_planes_;
+  ProjectState unloaded_;  ///< that `unloadings_` are of
+  std::optional<std::vector<UnloadAnalysis>> unloadings_;
   Pairs touching_;
   Pairs near_;
   std::optional<std::vector<AxisPair>> axes_;

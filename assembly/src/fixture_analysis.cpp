@@ -61,6 +61,14 @@ std::set<std::string> taken_off(const ProjectState& state, Session& session,
   return off;
 }
 
+/// False for what the workpiece cannot reach on its way out, by the balls around the two boxes.
+bool comes_near(const FixtureModel& model, FactSource& source, const Instance& instance) {
+  const Obb& box = source.element(instance).obb;
+  const double reach_mm = model.frame.length_mm + box.half_extents_mm.norm() +
+                          source.state().design.limit("lift_mm") + source.state().tolerance_mm;
+  return (instance.X_WI * box.center - model.frame.reference).norm() <= reach_mm;
+}
+
 }  // namespace
 
 Eigen::MatrixXd all_wrenches(const FixtureModel& model) {
@@ -129,16 +137,14 @@ std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const Fixture
   return result;
 }
 
-UnloadAnalysis analyse_unloading(
-    const FixtureModel& model, const ProjectState& state, Session& session,
-    const std::function<std::shared_ptr<const FacetedSolid>(const std::string&)>& solid) {
-  PlacedBodies bodies(
-      [&](const std::string& name) -> const Element& { return session.element(name); }, solid);
-  bodies.follow(state);
+UnloadAnalysis analyse_unloading(const FixtureModel& model, FactSource& source) {
+  const ProjectState& state = source.state();
+  const std::set<std::string> off = taken_off(state, source.session(), source.touches());
   ProjectState opened = state;
-  for (const std::string& name : taken_off(state, session, bodies.check_all(state.tolerance_mm))) {
-    opened.instances.erase(name);
-  }
+  std::erase_if(opened.instances, [&](const auto& entry) {
+    return off.contains(entry.first) || !comes_near(model, source, entry.second);
+  });
+  PlacedBodies bodies = source.bodies().empty_copy();
   bodies.follow(opened);
   UnloadAnalysis result;
   result.lift_mm = state.design.limit("lift_mm");
@@ -165,14 +171,15 @@ UnloadAnalysis analyse_unloading(
   return result;
 }
 
-FixtureModel fixture_model(Session& session) {
-  FactSource source(session);
-  source.update();
+namespace {
+
+const FixtureModel& only_fixture(FactSource& source) {
   const auto& fixtures = source.fixtures();
   if (fixtures.size() == 1) return fixtures.front();
   std::string found;
-  for (const FixtureModel& model : fixtures)
+  for (const FixtureModel& model : fixtures) {
     found += (found.empty() ? ": " : ", ") + model.workpiece;
+  }
   throw Error(
       ErrorCode::InvalidInput,
       fixtures.empty()
@@ -180,9 +187,19 @@ FixtureModel fixture_model(Session& session) {
           : "expected one workpiece, there are " + std::to_string(fixtures.size()) + found);
 }
 
+}  // namespace
+
+FixtureModel fixture_model(Session& session) {
+  FactSource source(session);
+  source.update();
+  return only_fixture(source);
+}
+
 FixtureAnalysis analyse_fixture(Session& session) {
+  FactSource source(session);
+  source.update();
   FixtureAnalysis result;
-  result.model = fixture_model(session);
+  result.model = only_fixture(source);
   const FixtureModel& model = result.model;
   const FixtureDesign& design = session.state().design;
   result.locating = analyse_locating(model.locators, model.frame);
@@ -195,9 +212,7 @@ FixtureAnalysis analyse_fixture(Session& session) {
   result.support_margin_mm = supports.empty()
                                  ? -std::numeric_limits<double>::infinity()
                                  : support_margin_mm(supports, model.center_of_mass.head<2>());
-  result.unloading =
-      analyse_unloading(model, session.state(), session,
-                        [&](const std::string& name) { return session.solid(name); });
+  result.unloading = source.unloadings().front();
   return result;
 }
 

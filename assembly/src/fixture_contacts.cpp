@@ -182,11 +182,16 @@ FixtureModel fixture_model(const FixtureInput& input, const Instance& workpiece)
     const std::string& name = touch.instance == workpiece.name ? touch.with : touch.instance;
     const Instance& other = *input.state.find(name);
     const Role role = fixture_role(input.state, other, input.element(other.element));
-    for (const ContactPatch& patch :
-         contact_patches(*input.solid(other.element), other.X_WI, *solid, workpiece.X_WI,
-                         input.state.tolerance_mm, touch.pair.witness_W)) {
-      // The wall of a hole touches its pin somewhere; the pin stops it all around.
-      if (patch.area_mm2 == 0.0 && pins.contains(name)) continue;
+    std::vector<ContactPatch> patches = input.shared_planes(touch);
+    if (touch.instance == workpiece.name) {
+      for (ContactPatch& patch : patches) patch.normal_W = -patch.normal_W;
+    }
+    // The wall of a hole touches its pin somewhere; the pin stops it all around.
+    if (patches.empty() && !pins.contains(name)) {
+      patches = contact_patches(*input.solid(other.element), other.X_WI, *solid, workpiece.X_WI,
+                                input.state.tolerance_mm, touch.pair.witness_W);
+    }
+    for (const ContactPatch& patch : patches) {
       model.contacts.push_back(
           {name, role, patch.at_W, patch.normal_W, patch.area_mm2, patch.corners_W});
     }

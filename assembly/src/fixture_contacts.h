@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "contact_patch.h"
 #include "dowel/assembly/fixture_analysis.h"
 #include "dowel/assembly/session.h"
 
@@ -14,6 +15,8 @@ struct FixtureInput {
   const ProjectState& state;
   std::function<const Element&(const std::string&)> element;
   std::function<std::shared_ptr<const FacetedSolid>(const std::string&)> solid;
+  /// Planes that the two share, normals out of the first.
+  std::function<const std::vector<ContactPatch>&(const Touch&)> shared_planes;
   const std::vector<Touch>& touches;  ///< all that is not clear
 };
 

@@ -2,8 +2,6 @@
 
 // Steps of the fixture analysis that rules ask for one by one. Internal to both.
 
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +9,8 @@
 #include "dowel/assembly/fixture_analysis.h"
 
 namespace dowel {
+
+class FactSource;
 
 /// Columns: a unit force at each locating point and each clamp contact.
 Eigen::MatrixXd all_wrenches(const FixtureModel& model);
@@ -27,8 +27,6 @@ std::vector<PointAnalysis> analyse_points(const FixtureModel& model, const Fixtu
 
 std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const FixtureDesign& design);
 
-UnloadAnalysis analyse_unloading(
-    const FixtureModel& model, const ProjectState& state, Session& session,
-    const std::function<std::shared_ptr<const FacetedSolid>(const std::string&)>& solid);
+UnloadAnalysis analyse_unloading(const FixtureModel& model, FactSource& source);
 
 }  // namespace dowel

@@ -51,12 +51,8 @@ FactRows seats(FactSource& source) {
   FactRows rows;
   for (const Touch& touch : source.touches()) {
     if (touch.pair.verdict != Verdict::Contact) continue;
-    const Instance& a = *source.state().find(touch.instance);
-    const Instance& b = *source.state().find(touch.with);
-    for (const ContactPatch& patch :
-         contact_patches(*source.solid(a.element), a.X_WI, *source.solid(b.element), b.X_WI,
-                         source.state().tolerance_mm, touch.pair.witness_W)) {
-      rows.push_back({a.name, b.name, patch.area_mm2, patch.at_W.x(), patch.at_W.y(),
+    for (const ContactPatch& patch : source.shared_planes(touch)) {
+      rows.push_back({touch.instance, touch.with, patch.area_mm2, patch.at_W.x(), patch.at_W.y(),
                       patch.at_W.z(), patch.normal_W.x(), patch.normal_W.y(), patch.normal_W.z()});
     }
   }
@@ -158,10 +154,10 @@ std::vector<FactTable> pair_facts() {
        kFromParts | kFromTolerance,
        interferences},
       {"seats",
-       "Where touching pairs touch: a row for each plane that they share, or for the point.",
+       "Where touching pairs touch: a row for each plane that they share.",
        {{"a", "instance, first by name"},
         {"b", "instance"},
-        {"area_mm2", "shared; 0: along a line or at a point"},
+        {"area_mm2", "shared"},
         {"x_mm", "middle"},
         {"y_mm", ""},
         {"z_mm", ""},

@@ -22,6 +22,9 @@ class PlacedBodies {
 
   PlacedBodies(FindElement find_element, LoadSolid load_solid);
 
+  /// One without bodies that shares the elements' models.
+  PlacedBodies empty_copy() const;
+
   /// Makes the scene that of `state`, touching only what differs.
   void follow(const ProjectState& state);
 
@@ -51,8 +54,8 @@ class PlacedBodies {
 
   std::vector<Touch> check_all(double tolerance_mm);
 
-  /// The verdict of two bodies as they are placed, whatever was asked before: witnesses and bounds of
-  /// the other checks may hang on that.
+  /// The verdict of two bodies as they are placed, whatever was asked before: witnesses and bounds
+  /// of the other checks may hang on that.
   PairVerdict pair(const std::string& a, const std::string& b, double tolerance_mm);
 
   /// Forgets an element that no body uses, so that it is loaded anew.

@@ -5,6 +5,12 @@
 
 namespace dowel {
 
+PlacedBodies PlacedBodies::empty_copy() const {
+  PlacedBodies copy(find_element_, load_solid_);
+  copy.shapes_ = shapes_;
+  return copy;
+}
+
 PairVerdict PlacedBodies::pair(const std::string& a, const std::string& b, double tolerance_mm) {
   const Body& first = bodies_.at(a);
   const Body& second = bodies_.at(b);

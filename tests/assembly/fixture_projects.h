@@ -67,6 +67,12 @@ class FixtureBuilder {
     state.instances[name] = instance;
   }
 
+  void remove(const std::string& name) {
+    state.instances.erase(name);
+    std::erase_if(state.mates,
+                  [&](const auto& entry) { return entry.second.moving.instance == name; });
+  }
+
   /// Held to the plate where it is.
   void fix(const std::string& name) {
     Mate mate;
@@ -115,6 +121,42 @@ inline FixtureBuilder sound_fixture() {
   design.clamp_forces_N["CLAMP"] = 6000.0;
   design.loads["CUT"] = {{300, 0, 0}, {0, 0, 90}, {0, 0, 0}};
   design.points["BORE"] = {{30, 30, 90}, 0.2};
+  return builder;
+}
+
+/// The block of the sound fixture on two pins instead of stops: a round one and a diamond, or two
+/// round ones.
+inline FixtureBuilder pinned_fixture(bool with_diamond) {
+  FixtureBuilder builder = sound_fixture();
+  for (const char* name : {"STOP1", "STOP2", "STOP3", "WORK"}) builder.remove(name);
+  DrilledHole left;
+  left.radius_mm = 6.0;
+  left.x = -20.0;
+  DrilledHole right = left;
+  right.x = 20.0;
+  ProjectElement work = element_of(
+      "W/drilled-120x80x30", plate_with_holes({120, 80, 30}, {left, right}, 24),
+      {hole_feature("h1", {-20, 0, 30}, -Eigen::Vector3d::UnitZ(), {{12.0, 30.0}}, true),
+       hole_feature("h2", {20, 0, 30}, -Eigen::Vector3d::UnitZ(), {{12.0, 30.0}}, true)});
+  work.element.role = "workpiece";
+  builder.add_element(work);
+  builder.place("W/drilled-120x80x30", "WORK", {0, 0, 60});
+  builder.state.design.clamp_forces_N["CLAMP"] = 6000.0;
+  const auto shank = shaft_feature("pin1", {0, 0, 30}, -Eigen::Vector3d::UnitZ(), 11.99, 30.0);
+  const auto foot = face_feature("bottom", {0, 0, 0}, -Eigen::Vector3d::UnitZ(), 112.0);
+  ProjectElement round = element_of("T/pin-round", cylinder(5.995, 30.0, 24), {shank, foot});
+  round.element.role = "locator";
+  builder.add_element(round);
+  builder.place("T/pin-round", "PIN1", {-20, 0, 40});
+  if (with_diamond) {
+    ProjectElement diamond =
+        element_of("T/pin-diamond", box({0.6, 11.98, 30}, {0, 0, 15}), {shank});
+    diamond.element.role = "locator";
+    builder.add_element(diamond);
+  }
+  builder.place(with_diamond ? "T/pin-diamond" : "T/pin-round", "PIN2", {20, 0, 40});
+  builder.fix("PIN1");
+  builder.fix("PIN2");
   return builder;
 }
 

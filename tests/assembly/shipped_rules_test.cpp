@@ -36,12 +36,6 @@ void move(FixtureBuilder& builder, const std::string& name, const Vector3d& to) 
   }
 }
 
-void remove(FixtureBuilder& builder, const std::string& name) {
-  builder.state.instances.erase(name);
-  std::erase_if(builder.state.mates,
-                [&](const auto& entry) { return entry.second.moving.instance == name; });
-}
-
 void unfix(FixtureBuilder& builder, const std::string& name) {
   std::erase_if(builder.state.mates,
                 [&](const auto& entry) { return entry.second.moving.instance == name; });
@@ -116,8 +110,7 @@ void block_examples(Seen& seen) {
     try_example(testing::sound_fixture(), example, {"CLP-05"}, seen);
   };
   try_block({"sound", {}, [](FixtureBuilder&) {}});
-  try_block(
-      {"two stops only", {"LOC-01", "LOC-02"}, [](FixtureBuilder& b) { remove(b, "STOP3"); }});
+  try_block({"two stops only", {"LOC-01", "LOC-02"}, [](FixtureBuilder& b) { b.remove("STOP3"); }});
   try_block({"a fourth rest", {"LOC-03"}, [](FixtureBuilder& b) {
                b.place("T/rest-16x16x20", "REST4", {30, 30, 40});
                b.fix("REST4");
@@ -235,10 +228,38 @@ void data_examples(Seen& seen) {
   try_block({"triangles that are not there", {"CAT-01"}, [&](FixtureBuilder& b) {
                element(b, rest).triangles.total += 1;
              }});
+  try_block({"a box that is too small", {"CAT-02"}, [&](FixtureBuilder& b) {
+               element(b, rest).obb.half_extents_mm.x() -= 0.5;
+             }});
+  try_block({"holes that are not declared", {"CAT-04"}, [&](FixtureBuilder& b) {
+               dowel::TriangleCounts& counts = element(b, "T/plate-5x3").triangles;
+               counts.hole = counts.other;
+               counts.other = 0;
+             }});
   try_block(
       {"no unit", {"CAT-05"}, [&](FixtureBuilder& b) { element(b, rest).unit_in_file.clear(); }});
   try_block(
       {"no licence", {"CAT-06"}, [&](FixtureBuilder& b) { element(b, rest).licence.clear(); }});
+}
+
+/// Collision refuses a damaged mesh, so that rules that ask it are broken: one is looked at alone.
+void damaged_mesh_example(Seen& seen) {
+  FixtureBuilder builder = testing::sound_fixture();
+  ProjectElement& rest = *std::ranges::find_if(
+      builder.elements,
+      [](const ProjectElement& candidate) { return candidate.element.name == "T/rest-16x16x20"; });
+  dowel::FacetedSolid solid = *rest.solid;
+  std::swap(solid.triangles[0][0], solid.triangles[0][1]);
+  rest.solid = std::make_shared<const dowel::FacetedSolid>(solid);
+  const dowel::RuleSet rules = dowel::shipped_rules();
+  const auto session = builder.session();
+  const RuleReport report = dowel::RuleChecker(*session, rules).check();
+  const auto mesh = std::ranges::find_if(
+      report.results, [](const RuleResult& result) { return result.rule.id == "CAT-03"; });
+  REQUIRE(mesh != report.results.end());
+  CHECK(mesh->count(RuleState::Fail) == 1);
+  CHECK_FALSE(report.broken.empty());
+  seen["CAT-03"].second = mesh->count(RuleState::Fail) > 0;
 }
 
 /// A pin of 11.99 mm at `at`, held, in the plate's hole; classes are stated where they are not
@@ -278,7 +299,7 @@ void make_blind(FixtureBuilder& b) {
 
 /// Without the block, so that the screw's shank is free.
 void add_nut(FixtureBuilder& b, double z_mm) {
-  remove(b, "BLOCK");
+  b.remove("BLOCK");
   dowel::testing::DrilledHole hole;
   hole.radius_mm = 5.053;
   ProjectElement nut =
@@ -292,7 +313,7 @@ void add_nut(FixtureBuilder& b, double z_mm) {
 
 /// The screw's head in a counterbore 13 mm deep.
 void sink_head(FixtureBuilder& b, double radius_mm) {
-  remove(b, "BLOCK");
+  b.remove("BLOCK");
   dowel::testing::DrilledHole hole;
   hole.radius_mm = 6.5;
   hole.counterbore_radius_mm = radius_mm;
@@ -308,46 +329,11 @@ void sink_head(FixtureBuilder& b, double radius_mm) {
   move(b, "SCREW", {-40, 0, 2});
 }
 
-/// The block of the sound fixture on two pins instead of stops.
-FixtureBuilder pinned(bool with_diamond) {
-  FixtureBuilder builder = testing::sound_fixture();
-  for (const char* name : {"STOP1", "STOP2", "STOP3", "WORK"}) remove(builder, name);
-  dowel::testing::DrilledHole left;
-  left.radius_mm = 6.0;
-  left.x = -20.0;
-  dowel::testing::DrilledHole right = left;
-  right.x = 20.0;
-  ProjectElement work = testing::element_of(
-      "W/drilled-120x80x30", testing::plate_with_holes({120, 80, 30}, {left, right}, 24),
-      {testing::hole_feature("h1", {-20, 0, 30}, kDown, {{12.0, 30.0}}, true),
-       testing::hole_feature("h2", {20, 0, 30}, kDown, {{12.0, 30.0}}, true)});
-  work.element.role = "workpiece";
-  builder.add_element(work);
-  builder.place("W/drilled-120x80x30", "WORK", {0, 0, 60});
-  builder.state.design.clamp_forces_N["CLAMP"] = 6000.0;
-  const auto shank = testing::shaft_feature("pin1", {0, 0, 30}, kDown, 11.99, 30.0);
-  const auto foot = testing::face_feature("bottom", {0, 0, 0}, kDown, 112.0);
-  ProjectElement round =
-      testing::element_of("T/pin-round", testing::cylinder(5.995, 30.0, 24), {shank, foot});
-  round.element.role = "locator";
-  builder.add_element(round);
-  builder.place("T/pin-round", "PIN1", {-20, 0, 40});
-  if (with_diamond) {
-    ProjectElement diamond =
-        testing::element_of("T/pin-diamond", testing::box({0.6, 11.98, 30}, {0, 0, 15}), {shank});
-    diamond.element.role = "locator";
-    builder.add_element(diamond);
-  }
-  builder.place(with_diamond ? "T/pin-diamond" : "T/pin-round", "PIN2", {20, 0, 40});
-  builder.fix("PIN1");
-  builder.fix("PIN2");
-  return builder;
-}
-
 void pinned_examples(Seen& seen) {
-  try_example(pinned(true), {"round and diamond pin", {}, [](FixtureBuilder&) {}}, {}, seen);
-  try_example(pinned(false), {"two round pins", {"LOC-03", "LOC-08"}, [](FixtureBuilder&) {}}, {},
-              seen);
+  try_example(testing::pinned_fixture(true), {"round and diamond pin", {}, [](FixtureBuilder&) {}},
+              {}, seen);
+  try_example(testing::pinned_fixture(false),
+              {"two round pins", {"LOC-03", "LOC-08"}, [](FixtureBuilder&) {}}, {}, seen);
 }
 
 void screwed_examples(Seen& seen) {
@@ -371,6 +357,26 @@ void screwed_examples(Seen& seen) {
                  add_pin(b, "T/pin-loose", "f9", {40, -40, 30}, "A4", "H9");
                  add_pin(b, "T/pin-snug", "n6", {80, -40, 30}, "A5", "H7");
                }});
+  try_screwed({"a locator that is pressed in", {}, [](FixtureBuilder& b) {
+                 add_pin(b, "T/pin-snug", "n6", {80, -40, 30}, "A5", "H7");
+                 b.state.design.roles["pin-snug"] = dowel::Role::Locator;
+               }});
+  try_screwed({"a locator on two clearance screws", {"FST-03"}, [](FixtureBuilder& b) {
+                 b.remove("BLOCK");
+                 dowel::testing::DrilledHole left;
+                 left.radius_mm = 6.5;
+                 left.x = -20.0;
+                 dowel::testing::DrilledHole right = left;
+                 right.x = 20.0;
+                 b.add_element(testing::element_of(
+                     "T/wide-100x60x40",
+                     testing::plate_with_holes({100, 60, 40}, {left, right}, 24),
+                     {testing::hole_feature("h1", {-20, 0, 40}, kDown, {{13.0, 40.0}}, true),
+                      testing::hole_feature("h2", {20, 0, 40}, kDown, {{13.0, 40.0}}, true)}));
+                 b.place("T/wide-100x60x40", "WIDE", {-20, 0, 40});
+                 b.place("T/screw-M12x65", "SCREW2", {0, 0, 15});
+                 b.state.design.roles["WIDE"] = dowel::Role::Locator;
+               }});
   try_screwed({"two pins in one hole", {"FST-10"}, [](FixtureBuilder& b) {
                  add_pin(b, "T/pin-a", "", {40, -40, 30}, "A4", "");
                  add_pin(b, "T/pin-b", "", {40, -40, 60}, "A4", "");
@@ -393,7 +399,7 @@ void screwed_examples(Seen& seen) {
   try_screwed({"a blind hole, deep enough", {}, [](FixtureBuilder& b) { make_blind(b); }});
   try_screwed({"a screw that bottoms", {"FST-05"}, [](FixtureBuilder& b) {
                  make_blind(b);
-                 remove(b, "BLOCK");
+                 b.remove("BLOCK");
                  move(b, "SCREW", {-40, 0, 1});
                }});
   try_screwed({"a nut on its thread", {}, [](FixtureBuilder& b) { add_nut(b, 50.0); }});
@@ -403,7 +409,7 @@ void screwed_examples(Seen& seen) {
   try_screwed(
       {"a head in a tight counterbore", {"CMP-05"}, [](FixtureBuilder& b) { sink_head(b, 9.2); }});
   try_screwed({"a stack of four", {"STK-02"}, [](FixtureBuilder& b) {
-                 remove(b, "BLOCK");
+                 b.remove("BLOCK");
                  dowel::testing::DrilledHole hole;
                  hole.radius_mm = 6.5;
                  ProjectElement thin = testing::element_of(
@@ -437,6 +443,11 @@ TEST_CASE("elements with faulty data fail the rules of the catalogue", "[rule]")
   data_examples(seen);
 }
 
+TEST_CASE("a damaged mesh fails its rule, and breaks those that need it alone", "[rule]") {
+  Seen seen;
+  damaged_mesh_example(seen);
+}
+
 TEST_CASE("screwed fixtures fail the rules that their fault is of", "[rule]") {
   Seen seen;
   screwed_examples(seen);
@@ -453,6 +464,7 @@ TEST_CASE("every shipped rule has an example that it passes and one that it fail
   block_examples(seen);
   collision_examples(seen);
   data_examples(seen);
+  damaged_mesh_example(seen);
   screwed_examples(seen);
   pinned_examples(seen);
   CHECK(seen.size() == dowel::shipped_rules().rules.size());

@@ -6,6 +6,6 @@
 SELECT a.instance || ' ' || b.instance AS subject,
        abs(a.x_mm - b.x_mm) + abs(a.y_mm - b.y_mm) + abs(a.z_mm - b.z_mm) > 0.01 AS ok,
        a.element
-FROM interferences AS i
+FROM (SELECT a, b FROM contacts UNION ALL SELECT a, b FROM interferences) AS i
 JOIN instances AS a ON a.instance = i.a
 JOIN instances AS b ON b.instance = i.b AND b.element = a.element
