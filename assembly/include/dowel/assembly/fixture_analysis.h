@@ -41,7 +41,7 @@ Role fixture_role(const ProjectState& state, const Instance& instance, const Ele
 /// True for what settles where the workpiece is when it touches it.
 bool is_locating(Role role);
 
-/// Gravity points down, -z. In mm/s2, kg and mm: N are mm kg / s2 / 1000.
+/// Standard gravity, which points down, against z.
 inline constexpr double kGravity_m_per_s2 = 9.80665;
 
 /// Weight of the workpiece as a wrench; zero where its mass is not known.
