@@ -177,6 +177,12 @@ const std::vector<FixtureModel>& FactSource::fixtures() {
   return *fixtures_;
 }
 
+const std::vector<LintFinding>& FactSource::data_faults(const std::string& element) {
+  const auto [entry, is_new] = data_faults_.try_emplace(element);
+  if (is_new) entry->second = lint(session_.element(element), *solid(element));
+  return entry->second;
+}
+
 const std::vector<ContactPatch>& FactSource::shared_planes(const Touch& touch) {
   const Instance& a = *state_.find(touch.instance);
   const Instance& b = *state_.find(touch.with);

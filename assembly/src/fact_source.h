@@ -14,6 +14,7 @@
 #include "contact_patch.h"
 #include "dowel/assembly/fixture_analysis.h"
 #include "dowel/assembly/session.h"
+#include "dowel/catalog/lint.h"
 #include "fact_table.h"
 #include "fixture_contacts.h"
 #include "placed_bodies.h"
@@ -49,6 +50,8 @@ class FactSource {
   /// One for each workpiece.
   const std::vector<FixtureModel>& fixtures();
 
+  /// What is wrong with the data of an element, found once: copies in a project never change.
+  const std::vector<LintFinding>& data_faults(const std::string& element);
   /// Planes that the two of a contact share.
   const std::vector<ContactPatch>& shared_planes(const Touch& touch);
   /// Whether each workpiece comes out, in the order of `fixtures`.
@@ -80,6 +83,7 @@ class FactSource {
   std::map<std::pair<std::string, std::string>, SharedPlanes> shared_planes_;
   ProjectState unloaded_;  ///< that `unloadings_` are of
   std::optional<std::vector<UnloadAnalysis>> unloadings_;
+  std::map<std::string, std::vector<LintFinding>> data_faults_;
   Pairs touching_;
   Pairs near_;
   std::optional<std::vector<AxisPair>> axes_;

@@ -3,7 +3,6 @@
 #include <array>
 #include <map>
 
-#include "dowel/catalog/lint.h"
 #include "fact_source.h"
 
 namespace dowel {
@@ -87,8 +86,7 @@ FactRows features(FactSource& source) {
 FactRows data_faults(FactSource& source) {
   FactRows rows;
   for (const auto& [name, count] : used_elements(source.state())) {
-    const Element& element = source.session().element(name);
-    for (const LintFinding& finding : lint(element, *source.solid(name))) {
+    for (const LintFinding& finding : source.data_faults(name)) {
       rows.push_back({name, finding.rule, finding.message});
     }
   }
