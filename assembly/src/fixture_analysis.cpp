@@ -151,7 +151,8 @@ UnloadAnalysis analyse_unloading(const FixtureModel& model, FactSource& source) 
   const Pose X_WI = state.find(model.workpiece)->X_WI;
   for (const Eigen::Vector3d& way : ways_out(model)) {
     const Pose X_WI_out(X_WI.rotation(), X_WI.translation() + result.lift_mm * way);
-    const auto path = bodies.sweep({{model.workpiece, Pose()}}, {X_WI, X_WI_out}, state.tolerance_mm);
+    const auto path =
+        bodies.sweep({{model.workpiece, Pose()}}, {X_WI, X_WI_out}, state.tolerance_mm);
     if (path.free_share >= result.free_share) {
       result.free_share = path.free_share;
       result.direction = way;
