@@ -82,15 +82,13 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
   return false;
 }
 
-/// Whether the place `c` of facet `index` lies between a chord and the arc over it, where facets
-/// overhang the rims of holes.
-bool overhangs_rim(const CollisionModel& model, std::uint32_t index, const Eigen::Vector3d& c) {
-  return std::ranges::any_of(model.overhangs(index), [&](const Chord& chord) {
-    const ModelTriangle& t = model.triangles()[chord.triangle];
-    const double beyond = beyond_edge(t, chord.edge, c);
-    return beyond <= kOnChord_mm && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
-           !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
-  });
+/// Whether the place `c` of a facet lies between a chord and the arc over it, where facets overhang
+/// the rims of holes.
+bool overhangs_rim(const CollisionModel& model, const Chord& chord, const Eigen::Vector3d& c) {
+  const ModelTriangle& t = model.triangles()[chord.triangle];
+  const double beyond = beyond_edge(t, chord.edge, c);
+  return beyond <= kOnChord_mm && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
+         !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
 }
 
 bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& c) {
@@ -121,6 +119,10 @@ bool foot_is_over(const ModelTriangle& t, const Face& face, const Eigen::Vector3
 
 FacePoint at(const Eigen::Vector3d& point, const Eigen::Vector3d& p, FacePoint::Place place) {
   return {point, (p - point).squaredNorm(), place};
+}
+
+FacePoint::Place rim_place(EdgeShape shape) {
+  return shape == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim;
 }
 
 /// Nearest place to `p` of the arc over edge `i`: the curve in which the exact faces on both sides
@@ -165,9 +167,7 @@ FacePoint nearest_on_arc(const CollisionModel& model, const ModelTriangle& t, st
     }
     last_side = side;
   }
-  return at(
-      x, p,
-      t.edges[i] == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim);
+  return at(x, p, rim_place(t.edges[i]));
 }
 
 /// Nearest place on the rim of the patch, once it is known not to be inside.
@@ -266,11 +266,23 @@ Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p) {
 
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p) {
-  FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
-  if (result.place == FacePoint::Place::Face && overhangs_rim(model, index, result.point)) {
-    result.distance_squared_mm2 = std::numeric_limits<double>::infinity();
+  const FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
+  if (result.place != FacePoint::Place::Face) return result;
+  // Where the foot is beyond the rim on both faces, the rim is nearest, and both have to look
+  // there.
+  FacePoint on_rim = result;
+  on_rim.distance_squared_mm2 = std::numeric_limits<double>::infinity();
+  bool overhangs = false;
+  for (const Chord& chord : model.overhangs(index)) {
+    if (!overhangs_rim(model, chord, result.point)) continue;
+    overhangs = true;
+    const ModelTriangle& t = model.triangles()[chord.triangle];
+    FacePoint on_arc = nearest_on_arc(model, t, chord.edge, p);
+    // A corner between two chords is none of the rim.
+    on_arc.place = rim_place(t.edges[chord.edge]);
+    if (on_arc.distance_squared_mm2 < on_rim.distance_squared_mm2) on_rim = on_arc;
   }
-  return result;
+  return overhangs ? on_rim : result;
 }
 
 }  // namespace dowel

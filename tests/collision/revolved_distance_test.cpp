@@ -1,0 +1,114 @@
+// The distance from solids of revolution, against that from their profile in the plane of axis and
+// radius.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "dowel/collision/model.h"
+#include "dowel/collision/scene.h"
+#include "random_geometry.h"
+#include "solids.h"
+
+using dowel::CollisionModel;
+using dowel::FacetedSolid;
+using dowel::Pose;
+namespace testing = dowel::testing;
+
+namespace {
+
+using Profile = std::vector<Eigen::Vector2d>;  // radius and height, counter-clockwise
+
+/// Signed distance from the solid that `profile` makes about the z axis, negative inside.
+double distance_from(const Profile& profile, const Eigen::Vector3d& p) {
+  const Eigen::Vector2d q(p.head<2>().norm(), p.z());
+  double least = std::numeric_limits<double>::infinity();
+  bool is_inside = false;
+  for (std::size_t i = 0; i < profile.size(); ++i) {
+    const Eigen::Vector2d& a = profile[i];
+    const Eigen::Vector2d& b = profile[(i + 1) % profile.size()];
+    if ((a.y() > q.y()) != (b.y() > q.y())) {
+      const double at = a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      if (q.x() < at) is_inside = !is_inside;
+    }
+    if (a.x() == 0.0 && b.x() == 0.0) continue;  // the axis is no boundary
+    const double share = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (q - a - share * (b - a)).norm());
+  }
+  return is_inside ? -least : least;
+}
+
+const Profile kConicalSeat{{4, 0}, {20, 0}, {20, 8}, {12, 8}};
+const Profile kConicalHead{{0, 0}, {4, 0}, {12, 8}, {0, 8}};
+const Profile kChamferedPin{{0, 0}, {5, 0}, {6, 1}, {6, 30}, {0, 30}};
+const Profile kCollar{{0, 0}, {4, 0}, {4, 10}, {9, 10}, {9, 14}, {5, 14}, {5, 25}, {0, 25}};
+const Profile kCounterbore{{4, 0}, {20, 0}, {20, 12}, {8, 12}, {8, 7}, {4, 7}};
+
+}  // namespace
+
+TEST_CASE("the distance from coarse solids of revolution is that from their profile",
+          "[property]") {
+  const auto profile = GENERATE(kConicalSeat, kConicalHead, kChamferedPin, kCollar, kCounterbore);
+  const auto segments = GENERATE(12U, 16U, 24U);
+  CAPTURE(profile.size(), profile[1].x(), segments);
+  const CollisionModel model(
+      std::make_shared<const FacetedSolid>(testing::revolved(profile, segments)), {});
+  testing::RandomGeometry random(21);
+  int inside = 0;
+  int outside = 0;
+  for (int i = 0; i < 3'000; ++i) {
+    // About a place of the boundary, closer than the facets are to the exact faces.
+    const std::size_t edge = random.index(static_cast<std::uint32_t>(profile.size()));
+    const Eigen::Vector2d& a = profile[edge];
+    const Eigen::Vector2d& b = profile[(edge + 1) % profile.size()];
+    if (a.x() == 0.0 && b.x() == 0.0) continue;
+    const Eigen::Vector2d on = a + random.uniform(0.0, 1.0) * (b - a);
+    const double angle = random.uniform(0.0, 6.3);
+    const Eigen::Vector3d p =
+        Eigen::Vector3d(on.x() * std::cos(angle), on.x() * std::sin(angle), on.y()) +
+        random.point(0.3);
+    const double truth = distance_from(profile, p);
+    const auto near = model.nearest(p);
+    CAPTURE(p.transpose(), truth, near.distance_mm, near.inside);
+    (truth < 0.0 ? inside : outside) += 1;
+    if (std::abs(truth) > 1e-9) REQUIRE(near.inside == (truth < 0.0));
+    REQUIRE(std::abs(near.distance_mm - std::abs(truth)) < 1e-6);
+  }
+  CHECK(inside > 300);
+  CHECK(outside > 300);
+}
+
+TEST_CASE("a conical head over its seat is clear by its gap, however coarse the facets") {
+  const auto segments = GENERATE(8U, 12U, 24U, 48U);
+  const auto gap_mm = GENERATE(0.02, 0.03, 0.2);
+  CAPTURE(segments, gap_mm);
+  const auto element = [&](const Profile& profile) {
+    auto solid = std::make_shared<const FacetedSolid>(testing::revolved(profile, segments));
+    const dowel::Aabb box = dowel::bounds(solid->vertices);
+    const dowel::Obb obb{box.center(), Eigen::Matrix3d::Identity(), 0.5 * box.size()};
+    return std::make_shared<const dowel::CollisionElement>(
+        obb, [solid] { return solid; }, std::vector<std::uint32_t>{});
+  };
+  dowel::CollisionScene scene;
+  scene.add(element(kConicalSeat), Pose());
+  const dowel::BodyId head = scene.add(element(kConicalHead), Pose());
+  testing::RandomGeometry random(22);
+  for (int i = 0; i < 20; ++i) {
+    const Pose turned =
+        Pose::about_axis({0, 0, 0}, Eigen::Vector3d::UnitZ(), random.uniform(0.0, 6.3));
+    const Pose X_WH(turned.rotation(), {0.0, 0.0, gap_mm * std::sqrt(2.0)});
+    const auto verdicts = scene.check(std::array{head}, std::array{X_WH}, {});
+    REQUIRE(dowel::worst(verdicts) == dowel::Verdict::Clear);
+    // Pressed in, or seated, it is not.
+    const Pose seated(turned.rotation(), Eigen::Vector3d::Zero());
+    REQUIRE(dowel::worst(scene.check(std::array{head}, std::array{seated}, {})) ==
+            dowel::Verdict::Contact);
+    const Pose pressed(turned.rotation(), {0.0, 0.0, -0.05});
+    REQUIRE(dowel::worst(scene.check(std::array{head}, std::array{pressed}, {})) ==
+            dowel::Verdict::Interference);
+  }
+}
