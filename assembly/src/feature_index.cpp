@@ -216,21 +216,6 @@ std::vector<std::size_t> FeatureIndex::anywhere(const Feature& moving) const {
   return found;
 }
 
-std::vector<std::size_t> FeatureIndex::slots_near(double key_mm, const Vector3d& center_W,
-                                                  double reach_mm) const {
-  std::vector<std::size_t> found;
-  const auto slots = by_size_.find(FeatureKind::Slot);
-  if (slots == by_size_.end()) return found;
-  for (auto it = slots->second.lower_bound(key_mm - kShaftExcess_mm);
-       it != slots->second.end() && it->first <= kWidestClearance * key_mm; ++it) {
-    for (const std::size_t i : it->second.all) {
-      if (is_near(entries_[i], center_W, reach_mm)) found.push_back(i);
-    }
-  }
-  std::ranges::sort(found);
-  return found;
-}
-
 std::vector<std::size_t> FeatureIndex::near_brute_force(const Feature& moving,
                                                         const Vector3d& center_W,
                                                         double reach_mm) const {

@@ -58,11 +58,6 @@ class FeatureIndex {
   /// The same wherever they are.
   std::vector<std::size_t> anywhere(const Feature& moving) const;
 
-  /// Slots that a key `key_mm` wide goes into, up to a quarter wider, whose middle line is within
-  /// `reach_mm` of `center_W`; ascending.
-  std::vector<std::size_t> slots_near(double key_mm, const Eigen::Vector3d& center_W,
-                                      double reach_mm) const;
-
   /// `near` by looking at all entries. Reference for tests.
   std::vector<std::size_t> near_brute_force(const Feature& moving, const Eigen::Vector3d& center_W,
                                             double reach_mm) const;
