@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dowel/assembly/session.h"
+#include "dowel/catalog/recognition.h"
 #include "dowel/kernel/mass_properties.h"
 #include "fixture_elements.h"
 
@@ -42,7 +43,10 @@ class FixtureBuilder {
 
   void add_element(ProjectElement element) {
     element.element.licence = "Apache-2.0";
+    element.element.sha256 = std::string(64, '0');
     element.element.density_kg_per_m3 = 7850.0;
+    element.element.triangles =
+        count_triangles(*element.solid, classify_faces(*element.solid, element.element.features));
     element.element.volume_mm3 = mass_properties(*element.solid).volume_mm3;
     for (const Face& face : element.solid->faces) {
       element.element.facet_error_mm =
@@ -52,7 +56,7 @@ class FixtureBuilder {
   }
 
   void add_box(const std::string& name, const Eigen::Vector3d& size, const std::string& role) {
-    elements.push_back(box_element(name, size, role));
+    add_element(box_element(name, size, role));
   }
 
   void place(const std::string& element, const std::string& name, const Eigen::Vector3d& at) {

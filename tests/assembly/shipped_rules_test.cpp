@@ -212,6 +212,7 @@ void collision_examples(Seen& seen) {
                  face.facet_error_mm = 0.3;
                }
                rough.element.facet_error_mm = 0.3;
+               rough.element.sha256 = std::string(64, '0');
                rough.solid = std::make_shared<const dowel::FacetedSolid>(solid);
                b.elements.push_back(rough);
                b.place("T/rough-16", "ROUGH", {90, 20, 40});
