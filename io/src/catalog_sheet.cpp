@@ -32,7 +32,7 @@ h2{font-size:18px;margin:32px 0 10px;padding-bottom:4px;border-bottom:2px solid 
 nav a{display:inline-block;margin:0 14px 4px 0;color:#1a5fa8;text-decoration:none}
 .legend span{margin-right:16px;white-space:nowrap}
 i.dot{display:inline-block;width:10px;height:10px;border-radius:50%;margin-right:5px}
-.grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(640px,100%),1fr));gap:16px}
+.grid{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(420px,100%),1fr));gap:16px}
 article{border:1px solid #d5d8dd;border-radius:6px;overflow:hidden;break-inside:avoid;
  content-visibility:auto;contain-intrinsic-size:480px 640px}
 .pictures{display:flex;justify-content:center;background:#fff;border-bottom:1px solid #e6e8eb}
