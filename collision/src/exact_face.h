@@ -41,8 +41,8 @@ struct FacePoint {
 };
 
 /// Nearest place to `p` of the exact face patch behind triangle `index`; where only its overhang
-/// over a rim comes near, the nearest place of that rim. Always a place of the boundary, up to terms of second order in the facet error; the smallest over all
-/// triangles is the distance.
+/// over a rim comes near, the nearest place of that rim. Always a place of the boundary, up to
+/// terms of second order in the facet error; the smallest over all triangles is the distance.
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p);
 
