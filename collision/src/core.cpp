@@ -100,6 +100,8 @@ class CoreFinder {
       const Eigen::Vector3d center = axes_.transpose() * core.center;
       const Eigen::Vector3d reach = (axes_.transpose() * core.axes).cwiseAbs() * core.half_mm;
       result.boxes_in_axes.push_back({center - reach, center + reach});
+      result.bounds_in_axes.extend(center - reach);
+      result.bounds_in_axes.extend(center + reach);
     }
     return result;
   }

@@ -44,13 +44,29 @@ std::optional<Eigen::Vector3d> common_point(const Core& a, const Core& b, double
   return std::nullopt;
 }
 
-/// The box of `core`, once placed, along B's axes.
-Aabb box_along(const Eigen::Matrix3d& axes_B, const Core& placed_core) {
-  const Eigen::Vector3d center = axes_B.transpose() * placed_core.center;
-  const Eigen::Vector3d reach =
-      (axes_B.transpose() * placed_core.axes).cwiseAbs() * placed_core.half_mm;
-  return {center - reach, center + reach};
-}
+/// Boxes of cores of A against those of B, each along its body's core axes.
+class CoreBoxSeparation {
+ public:
+  CoreBoxSeparation(const Cores& a, const Cores& b, const Pose& X_BA)
+      : R_(b.axes.transpose() * X_BA.rotation_matrix() * a.axes),
+        abs_R_(R_.cwiseAbs()),
+        translation_(b.axes.transpose() * X_BA.translation()) {}
+
+  /// Whether no plane along a face of either keeps them from having `depth_mm` in common.
+  bool may_share(const Aabb& box_a, const Aabb& box_b, double depth_mm) const {
+    const Eigen::Vector3d half_a = 0.5 * box_a.size();
+    const Eigen::Vector3d half_b = 0.5 * box_b.size();
+    const Eigen::Vector3d offset_B = R_ * box_a.center() + translation_ - box_b.center();
+    if ((offset_B.cwiseAbs() - half_b - abs_R_ * half_a).maxCoeff() > -depth_mm) return false;
+    const Eigen::Vector3d offset_A = R_.transpose() * offset_B;
+    return (offset_A.cwiseAbs() - half_a - abs_R_.transpose() * half_b).maxCoeff() <= -depth_mm;
+  }
+
+ private:
+  Eigen::Matrix3d R_;  // from the core axes of A to those of B
+  Eigen::Matrix3d abs_R_;
+  Eigen::Vector3d translation_;
+};
 
 }  // namespace
 
@@ -93,12 +109,15 @@ std::optional<CoreOverlap> overlap_of(const Cores& a, std::uint32_t core_a, cons
 
 std::optional<CoreOverlap> find_overlap(const Cores& a, const Cores& b, const Pose& X_BA,
                                         double margin_mm) {
+  if (a.cores.empty() || b.cores.empty()) return std::nullopt;
+  const CoreBoxSeparation boxes(a, b, X_BA);
+  const double shared_mm = 2.0 * margin_mm;
   int tries = 0;
   for (std::uint32_t i = 0; i < a.cores.size(); ++i) {
+    if (!boxes.may_share(a.boxes_in_axes[i], b.bounds_in_axes, shared_mm)) continue;
     const Core a_B = placed(a.cores[i], X_BA);
-    const Aabb box = box_along(b.axes, a_B).padded(-2.0 * margin_mm);
     for (std::uint32_t j = 0; j < b.cores.size(); ++j) {
-      if (!box.overlaps(b.boxes_in_axes[j])) continue;
+      if (!boxes.may_share(a.boxes_in_axes[i], b.boxes_in_axes[j], shared_mm)) continue;
       auto point = common_point(a_B, b.cores[j], margin_mm, a_B.center);
       if (point) {
         for (double margin = kGrowth * margin_mm;; margin *= kGrowth) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace dowel {
 namespace {
@@ -25,6 +26,15 @@ constexpr double kOnChord_mm = 1e-9;
 constexpr double kArcAccuracy = 1e-7;
 constexpr int kArcSteps = 24;
 
+/// A point this close to both surfaces is on their curve of intersection: rounding.
+constexpr double kOnCurve_mm = 1e-12;
+
+/// Axes closer than this (sine, and mm) are one, and the curve is a circle for the first guess.
+constexpr double kCoaxial = 1e-9;
+
+/// Arcs whose chord passes the centre closer than this share of the radius are no facet's.
+constexpr double kHalfCircle = 0.05;
+
 /// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
 /// False where they are tangent there.
 bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
@@ -36,9 +46,52 @@ bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
     const double cosine = nf.dot(ng);
     const double determinant = 1.0 - cosine * cosine;
     if (!(determinant > kTangent)) return false;
+    if (std::abs(df) <= kOnCurve_mm && std::abs(dg) <= kOnCurve_mm) return true;
     x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
   }
   return true;
+}
+
+/// What an axis must have for a surface to be one of revolution about it: this direction, where it
+/// is not zero, and a point that it passes through, if any.
+struct AxisDemand {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  bool has_point = false;
+};
+
+AxisDemand axis_demand(const Surface& surface) {
+  struct Visitor {
+    AxisDemand operator()(const OtherSurface&) const { return {}; }
+    AxisDemand operator()(const PlaneSurface& s) const { return {s.normal, s.origin, false}; }
+    AxisDemand operator()(const CylinderSurface& s) const { return {s.axis, s.origin, true}; }
+    AxisDemand operator()(const ConeSurface& s) const { return {s.axis, s.apex, true}; }
+    AxisDemand operator()(const SphereSurface& s) const {
+      return {Eigen::Vector3d::Zero(), s.center, true};
+    }
+    AxisDemand operator()(const TorusSurface& s) const { return {s.axis, s.center, true}; }
+  };
+  return std::visit(Visitor{}, surface);
+}
+
+struct Axis {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+};
+
+/// The axis about which both surfaces turn, so that they meet in circles; nothing where there is
+/// none. Two spheres are left to the general search.
+std::optional<Axis> common_axis(const Surface& f, const Surface& g) {
+  AxisDemand a = axis_demand(f);
+  AxisDemand b = axis_demand(g);
+  if (a.direction.isZero(0.0)) std::swap(a, b);
+  if (a.direction.isZero(0.0) || (!a.has_point && !b.has_point)) return std::nullopt;
+  if (a.direction.cross(b.direction).squaredNorm() > kCoaxial * kCoaxial) return std::nullopt;
+  if (a.has_point && b.has_point &&
+      a.direction.cross(b.point - a.point).squaredNorm() > kCoaxial * kCoaxial) {
+    return std::nullopt;
+  }
+  return Axis{a.has_point ? a.point : b.point, a.direction};
 }
 
 /// True where `c`, a point of the plane of a facet, lies on the face's side of the exact surface
@@ -125,15 +178,41 @@ FacePoint::Place rim_place(EdgeShape shape) {
   return shape == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim;
 }
 
+/// The same as `nearest_on_arc` where the curve is a circle; nothing where it is none.
+std::optional<FacePoint> nearest_on_circle(const Face& face, const Face& beyond,
+                                           const Eigen::Vector3d& start, const Eigen::Vector3d& end,
+                                           EdgeShape shape, const Eigen::Vector3d& p) {
+  const auto axis = common_axis(face.surface, beyond.surface);
+  if (!axis) return std::nullopt;
+  const Eigen::Vector3d& direction = axis->direction;
+  const Eigen::Vector3d center = axis->origin + direction * direction.dot(start - axis->origin);
+  const double radius = (start - center).norm();
+  const Eigen::Vector3d to_middle = 0.5 * (start + end) - center;
+  if (to_middle.squaredNorm() < kHalfCircle * kHalfCircle * radius * radius) return std::nullopt;
+  Eigen::Vector3d outward = p - center;
+  outward -= direction * direction.dot(outward);
+  const double from_axis = outward.norm();
+  // Every place is as near to a point of the axis.
+  if (from_axis <= kOnChord_mm) outward = to_middle;
+  Eigen::Vector3d x = center + outward * (radius / outward.norm());
+  if (to_middle.dot(x - start) <= 0.0) {
+    const bool start_is_near = (p - start).squaredNorm() < (p - end).squaredNorm();
+    return at(start_is_near ? start : end, p, FacePoint::Place::Corner);
+  }
+  if (!to_intersection(face, beyond, x)) return std::nullopt;
+  return at(x, p, rim_place(shape));
+}
+
 /// Nearest place to `p` of the arc over edge `i`: the curve in which the exact faces on both sides
-/// meet, between the corners of the edge. The root of "the tangent is at a right angle to the way
-/// to p" is sought along the chord by the Illinois rule.
+/// meet, between the corners of the edge. Where that is no circle, the root of "the tangent is at a
+/// right angle to the way to p" is sought along the chord by the Illinois rule.
 FacePoint nearest_on_arc(const CollisionModel& model, const ModelTriangle& t, std::size_t i,
                          const Eigen::Vector3d& p) {
   const Face& face = model.face(t.face);
   const Face& beyond = model.face(t.neighbours[i]);
   const Eigen::Vector3d& start = t.corners[i];
   const Eigen::Vector3d& end = t.corners[(i + 1) % 3];
+  if (const auto place = nearest_on_circle(face, beyond, start, end, t.edges[i], p)) return *place;
   // How far p lies ahead along the curve, seen from its point x.
   const auto ahead = [&](const Eigen::Vector3d& x) {
     Eigen::Vector3d tangent =
@@ -265,9 +344,12 @@ Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p) {
 }
 
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
-                           const Eigen::Vector3d& p) {
+                           const Eigen::Vector3d& p, double within_squared_mm2) {
   const FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
-  if (result.place != FacePoint::Place::Face) return result;
+  // The rim is on the face, and so no nearer than its foot.
+  if (result.place != FacePoint::Place::Face || result.distance_squared_mm2 > within_squared_mm2) {
+    return result;
+  }
   // Where the foot is beyond the rim on both faces, the rim is nearest, and both have to look
   // there.
   FacePoint on_rim = result;

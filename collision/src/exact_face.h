@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 #include "dowel/collision/model.h"
@@ -42,8 +44,11 @@ struct FacePoint {
 
 /// Nearest place to `p` of the exact face patch behind triangle `index`; where only its overhang
 /// over a rim comes near, the nearest place of that rim. Always a place of the boundary, up to
-/// terms of second order in the facet error; the smallest over all triangles is the distance.
+/// terms of second order in the facet error; the smallest over all triangles is the distance. Where
+/// that is more than `within_squared_mm2`, any place beyond that distance: the caller has a nearer
+/// one.
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
-                           const Eigen::Vector3d& p);
+                           const Eigen::Vector3d& p,
+                           double within_squared_mm2 = std::numeric_limits<double>::infinity());
 
 }  // namespace dowel

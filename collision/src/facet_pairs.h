@@ -9,6 +9,7 @@
 #include "dowel/collision/model.h"
 #include "dowel/collision/scene.h"
 #include "narrow_phase.h"
+#include "node_separation.h"
 #include "triangle_pair.h"
 
 // Which facets of two models come near each other: tree against tree, then leaf against leaf.
@@ -16,44 +17,18 @@
 
 namespace dowel {
 
-/// Boxes of a tree of A, in the frame of A, against boxes of B in the frame of B.
-class NodeSeparation {
- public:
-  explicit NodeSeparation(const Pose& X_BA)
-      : R_(X_BA.rotation_matrix()), abs_R_(R_.cwiseAbs()), translation_(X_BA.translation()) {}
-
-  /// Lower bound of the boxes' distance, from the planes of types 1 and 2; negative: they may meet.
-  double gap_mm(const BvhNode& a, const BvhNode& b) const {
-    const Eigen::Vector3d half_a = 0.5 * (a.max - a.min);
-    const Eigen::Vector3d half_b = 0.5 * (b.max - b.min);
-    const Eigen::Vector3d offset_B =
-        R_ * (0.5 * (a.max + a.min)) + translation_ - 0.5 * (b.max + b.min);
-    const double along_b = (offset_B.cwiseAbs() - half_b - abs_R_ * half_a).maxCoeff();
-    const double along_a =
-        ((R_.transpose() * offset_B).cwiseAbs() - half_a - abs_R_.transpose() * half_b).maxCoeff();
-    return std::max(along_a, along_b);
-  }
-
- private:
-  Eigen::Matrix3d R_;
-  Eigen::Matrix3d abs_R_;
-  Eigen::Vector3d translation_;
-};
-
-inline double size_squared(const BvhNode& node) {
-  return (node.max - node.min).squaredNorm();
-}
-
 /// Calls `visit(leaf of A, leaf of B)` for all pairs of leaves of wanted nodes whose boxes are
 /// `wanted(gap_mm)`; stops where it returns false. The nearer pair of children comes first.
 template <class WantedNodes, class Wanted, class Visit>
 void for_each_leaf_pair(const ModelPair& pair, NarrowScratch& scratch, QueryCounters& counters,
                         const WantedNodes& wanted_nodes, const Wanted& wanted, const Visit& visit) {
-  const NodeSeparation separation(pair.X_BA);
+  const NodeSeparation separation(pair.a, pair.b, pair.X_BA);
   const auto nodes_a = pair.a.nodes();
   const auto nodes_b = pair.b.nodes();
+  const auto boxes_a = pair.a.node_boxes();
+  const auto boxes_b = pair.b.node_boxes();
   scratch.stack.clear();
-  scratch.stack.push_back({0, 0, separation.gap_mm(nodes_a[0], nodes_b[0])});
+  scratch.stack.push_back({0, 0, separation.gap_mm(boxes_a[0], boxes_b[0])});
   ++counters.box_tests;
   while (!scratch.stack.empty()) {
     const auto [a, b, gap_mm] = scratch.stack.back();
@@ -66,13 +41,13 @@ void for_each_leaf_pair(const ModelPair& pair, NarrowScratch& scratch, QueryCoun
       if (!visit(node_a, node_b)) return;
       continue;
     }
-    const bool split_a =
-        node_b.is_leaf() || (!node_a.is_leaf() && size_squared(node_a) > size_squared(node_b));
+    const bool split_a = node_b.is_leaf() ||
+                         (!node_a.is_leaf() && size_squared(boxes_a[a]) > size_squared(boxes_b[b]));
     NarrowScratch::NodePair near{split_a ? node_a.first : a, split_a ? b : node_b.first, 0.0};
     NarrowScratch::NodePair far{split_a ? node_a.first + 1 : a, split_a ? b : node_b.first + 1,
                                 0.0};
-    near.gap_mm = separation.gap_mm(nodes_a[near.a], nodes_b[near.b]);
-    far.gap_mm = separation.gap_mm(nodes_a[far.a], nodes_b[far.b]);
+    near.gap_mm = separation.gap_mm(boxes_a[near.a], boxes_b[near.b]);
+    far.gap_mm = separation.gap_mm(boxes_a[far.a], boxes_b[far.b]);
     counters.box_tests += 2;
     if (far.gap_mm < near.gap_mm) std::swap(near, far);
     scratch.stack.push_back(far);

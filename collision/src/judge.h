@@ -110,12 +110,6 @@ class Judge {
   /// Whether facets of two nodes may face each other.
   bool may_face(const BvhNode& a, const BvhNode& b) const;
 
-  /// Calls `found(i, facet i of A in B, j)` for facets of wanted nodes whose boxes are within the
-  /// tolerance, until it returns true. Returns a lower bound of the distance of those that were
-  /// left out.
-  template <class WantedNodes, class Found>
-  double visit_near(const WantedNodes& wanted_nodes, const Found& found);
-
   /// Whether two flat facets that face each other within the tolerance have an area in common.
   bool faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j);
 

@@ -100,8 +100,9 @@ bool Judge::still_touches() {
 
 bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j) {
   ++counters_.triangle_tests;
-  const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B);
-  if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+  const double reach_squared = options_.tolerance_mm * options_.tolerance_mm;
+  const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B, reach_squared);
+  if (near.distance_squared_mm2 > reach_squared) return false;
   note_method(i, j);
   is_suspect_ = true;
   touch(i, on_a_B, j, near.point);
@@ -110,8 +111,9 @@ bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint
 
 bool Judge::touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j) {
   ++counters_.triangle_tests;
-  const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A);
-  if (near.distance_squared_mm2 > options_.tolerance_mm * options_.tolerance_mm) return false;
+  const double reach_squared = options_.tolerance_mm * options_.tolerance_mm;
+  const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A, reach_squared);
+  if (near.distance_squared_mm2 > reach_squared) return false;
   note_method(i, j);
   is_suspect_ = true;
   touch(i, placement_ * near.point, j, pair_.X_BA * on_b_A);
@@ -120,18 +122,38 @@ bool Judge::touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint
 
 void Judge::look_for_contact() {
   if (seat_touches()) return;
-  visit_near([&](const BvhNode& a, const BvhNode& b) { return may_face(a, b); },
-             [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-               return faces_lie_on_each_other(i, a_B, j);
-             });
-  if (result_.verdict == Verdict::Contact) return;
+  const double tolerance_mm = options_.tolerance_mm;
   double apart = std::numeric_limits<double>::infinity();
-  const double pruned = visit_near([](const BvhNode&, const BvhNode&) { return true; },
-                                   [&](std::uint32_t i, const PlacedTriangle& a_B,
-                                       std::uint32_t j) { return touches(i, a_B, j, apart); });
-  if (result_.verdict == Verdict::Clear) {
-    result_.gap_mm = std::max(std::min(apart, pruned), options_.tolerance_mm);
+  const auto visit_facets = [&](const BvhNode& leaf_a, const BvhNode& leaf_b, const auto& found) {
+    return for_each_near_pair(
+        pair_, placement_, leaf_a, leaf_b, tolerance_mm, apart,
+        [this](const ModelTriangle& t) { return takes_part(t); },
+        [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+          return !found(i, a_B, j);
+        });
+  };
+  scratch_.leaves.clear();
+  for_each_leaf_pair(
+      pair_, scratch_, counters_, [](const BvhNode&, const BvhNode&) { return true; },
+      [&](double gap_mm) {
+        if (gap_mm > tolerance_mm) apart = std::min(apart, gap_mm);
+        return gap_mm <= tolerance_mm;
+      },
+      [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
+        scratch_.leaves.push_back({&leaf_a, &leaf_b});
+        return !may_face(leaf_a, leaf_b) ||
+               visit_facets(leaf_a, leaf_b,
+                            [this](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                              return faces_lie_on_each_other(i, a_B, j);
+                            });
+      });
+  for (std::size_t n = 0; n < scratch_.leaves.size() && result_.verdict == Verdict::Clear; ++n) {
+    visit_facets(*scratch_.leaves[n].a, *scratch_.leaves[n].b,
+                 [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+                   return touches(i, a_B, j, apart);
+                 });
   }
+  if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, tolerance_mm);
 }
 
 bool Judge::seat_touches() {
@@ -163,26 +185,6 @@ bool Judge::may_face(const BvhNode& a, const BvhNode& b) const {
   const double opposite = -normal_B.dot(b.normal.cast<double>());
   const double cosine = a.cosine * b.cosine - a.sine * b.sine;  // of both spreads together
   return a.cosine <= 0.0F || b.cosine <= 0.0F || opposite >= cosine - kConeSlack;
-}
-
-template <class WantedNodes, class Found>
-double Judge::visit_near(const WantedNodes& wanted_nodes, const Found& found) {
-  double left_out = std::numeric_limits<double>::infinity();
-  for_each_leaf_pair(
-      pair_, scratch_, counters_, wanted_nodes,
-      [&](double gap_mm) {
-        if (gap_mm > options_.tolerance_mm) left_out = std::min(left_out, gap_mm);
-        return gap_mm <= options_.tolerance_mm;
-      },
-      [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-        return for_each_near_pair(
-            pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, left_out,
-            [this](const ModelTriangle& t) { return takes_part(t); },
-            [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-              return !found(i, a_B, j);
-            });
-      });
-  return left_out;
 }
 
 bool Judge::faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {

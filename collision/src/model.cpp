@@ -356,7 +356,7 @@ std::size_t CollisionModel::memory_bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(BvhNode) +
          triangles_.capacity() * sizeof(ModelTriangle) +
          component_of_.capacity() * sizeof(component_of_[0]) +
-         overhangs_.capacity() * sizeof(Chord) +
+         node_boxes_.capacity() * sizeof(NodeBox) + overhangs_.capacity() * sizeof(Chord) +
          overhang_begin_.capacity() * sizeof(overhang_begin_[0]) +
          inner_points_.capacity() * sizeof(InnerPoint) +
          seat_planes_.capacity() * sizeof(SeatPlane) + seats_.capacity() * sizeof(Seat) +

@@ -97,7 +97,7 @@ struct Best {
     const double height = facet.normal.dot(p - facet.corners[0]);
     const double above = std::max(std::abs(height) - facet.normal_slack_mm, 0.0);
     if (above * above > place.distance_squared_mm2) return;
-    const FacePoint candidate = nearest_on_patch(model, t, p);
+    const FacePoint candidate = nearest_on_patch(model, t, p, place.distance_squared_mm2);
     if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
       place = candidate;
       triangle = t;

@@ -1,6 +1,7 @@
 // The tree over an element's triangles.
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -107,6 +108,26 @@ void CollisionModel::build_tree(const std::vector<Eigen::Vector3d>& reaches) {
   }
   triangles_ = std::move(sorted_triangles);
   component_of_ = std::move(sorted_components);
+  set_node_boxes();
+}
+
+void CollisionModel::set_node_boxes() {
+  const Eigen::Vector3d root = 0.5 * (nodes_[0].min + nodes_[0].max);
+  node_boxes_.clear();
+  node_boxes_.reserve(nodes_.size());
+  for (const BvhNode& node : nodes_) {
+    NodeBox box;
+    for (std::size_t lane = 0; lane < 3; ++lane) {
+      const auto i = static_cast<Eigen::Index>(lane);
+      const float center = static_cast<float>(0.5 * (node.min[i] + node.max[i]) - root[i]);
+      const double middle = root[i] + static_cast<double>(center);
+      const double half = std::max(node.max[i] - middle, middle - node.min[i]);
+      box.center[lane] = center;
+      box.half[lane] =
+          std::nextafter(static_cast<float>(half), std::numeric_limits<float>::infinity());
+    }
+    node_boxes_.push_back(box);
+  }
 }
 
 void CollisionModel::set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const {

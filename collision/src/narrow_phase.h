@@ -25,7 +25,12 @@ struct NarrowScratch {
     std::uint32_t b;
     double gap_mm;  ///< lower bound of the distance of the nodes' boxes
   };
+  struct LeafPair {
+    const BvhNode* a;
+    const BvhNode* b;
+  };
   std::vector<NodePair> stack;
+  std::vector<LeafPair> leaves;  ///< that are near each other
 };
 
 /// Two models, one placed relative to the other.

@@ -38,6 +38,7 @@ struct Cores {
   std::vector<Core> cores;          ///< the largest first
   Eigen::Matrix3d axes;             ///< that blocks are along
   std::vector<Aabb> boxes_in_axes;  ///< of each core, along these axes
+  Aabb bounds_in_axes;              ///< of all of them
 
   std::size_t memory_bytes() const;
 };

@@ -30,6 +30,15 @@ struct BvhNode {
   bool is_leaf() const noexcept { return count != 0; }
 };
 
+/// The box of a node once more for walks of tree against tree, in lanes of one register: single
+/// precision, rounded outwards, about the centre of the root's box.
+struct NodeBox {
+  static constexpr float kNever = 1e30F;  ///< keeps the last lane out of every maximum of gaps
+
+  alignas(16) std::array<float, 4> center{};
+  alignas(16) std::array<float, 4> half{0.0F, 0.0F, 0.0F, kNever};
+};
+
 /// How the two triangles at an edge meet.
 enum class EdgeShape : std::uint8_t { Inner, Convex, Concave, Smooth };
 
@@ -93,6 +102,7 @@ class CollisionModel {
                  std::span<const std::uint32_t> hole_faces);
 
   std::span<const BvhNode> nodes() const noexcept { return nodes_; }
+  std::span<const NodeBox> node_boxes() const noexcept { return node_boxes_; }  ///< by node
   std::span<const ModelTriangle> triangles() const noexcept { return triangles_; }
   const Face& face(std::uint32_t index) const { return solid_->faces[index]; }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(solid_->faces.size()); }
@@ -151,6 +161,7 @@ class CollisionModel {
   /// Returns how far the exact boundary can stand off each facet along x, y and z.
   std::vector<Eigen::Vector3d> build_triangles(std::span<const std::uint32_t> hole_faces);
   void build_tree(const std::vector<Eigen::Vector3d>& reaches);
+  void set_node_boxes();
   void set_cone(BvhNode& node, std::span<const std::uint32_t> triangles) const;
   void find_overhangs();
   void find_inner_points();
@@ -161,6 +172,7 @@ class CollisionModel {
 
   std::shared_ptr<const FacetedSolid> solid_;
   std::vector<BvhNode> nodes_;
+  std::vector<NodeBox> node_boxes_;
   std::vector<ModelTriangle> triangles_;
   std::vector<std::uint32_t> component_of_;  // by triangle
   std::vector<Chord> overhangs_;             // by triangle, from overhang_begin_ on
