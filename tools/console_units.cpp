@@ -176,11 +176,13 @@ void add_changes(const std::vector<std::pair<Instance, Instance>>& changed, Repl
 
 Reply run_diff(Console& console, Arguments& arguments) {
   const std::string first = arguments.word("a project file");
-  const ProjectState a = arguments.located([&] { return Project::open(first).state(); });
+  const auto state_of = [&](const std::string& file) {
+    return arguments.located([&] { return read_project_state(file); });
+  };
+  const ProjectState a = state_of(first);
   ProjectState b = console.session().state();
   if (!arguments.at_end()) {
-    const std::string second = arguments.word("another project file");
-    b = arguments.located([&] { return Project::open(second).state(); });
+    b = state_of(arguments.word("another project file"));
   }
   arguments.expect_end();
   const ProjectDiff difference = diff(a, b);

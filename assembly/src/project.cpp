@@ -141,7 +141,7 @@ Project Project::create(const std::filesystem::path& file) {
 }
 
 Project Project::open(const std::filesystem::path& file) {
-  return Project(std::make_unique<Impl>(ProjectDatabase(file)));
+  return Project(std::make_unique<Impl>(ProjectDatabase(file, ProjectAccess::ReadWrite)));
 }
 
 const std::filesystem::path& Project::file() const {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A project's tables in SQLite. Internal to Project.
+// A project's rows in SQLite. Internal to Project.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,18 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <SQLiteCpp/SQLiteCpp.h>
-
+#include "project_file.h"
 #include "project_rows.h"
 
 namespace dowel {
-
-/// "DWLP" in the database header: tells a project from any other SQLite file.
-inline constexpr std::int32_t kProjectApplicationId = 0x44574C50;
-
-/// Grows with every change of the tables. Version 1 had no table "mate_target".
-inline constexpr std::int32_t kProjectVersion = 2;
-inline constexpr std::int32_t kProjectVersionWithoutTargets = 1;
 
 /// Which journal entry to take.
 enum class JournalEnd { LastDone, FirstUndone };
@@ -34,14 +26,14 @@ struct JournalRecord {
 class ProjectDatabase {
  public:
   /// In memory, with empty tables.
-  ProjectDatabase();
+  ProjectDatabase() = default;
 
-  /// Opens, locks and checks an existing project. Throws as Project::open.
-  explicit ProjectDatabase(const std::filesystem::path& file);
+  /// Throws as Project::open.
+  ProjectDatabase(const std::filesystem::path& file, ProjectAccess access);
 
-  const std::filesystem::path& file() const { return file_; }
+  const std::filesystem::path& file() const { return file_.path(); }
   /// The file's name, or "the project in memory".
-  const std::string& title() const { return title_; }
+  const std::string& title() const { return file_.title(); }
 
   ProjectState read_state() const;
   std::vector<std::string> element_names() const;
@@ -67,10 +59,10 @@ class ProjectDatabase {
   void write_rows(const ProjectRows& before, const ProjectRows& after);
   void write_elements(std::span<const ProjectElement> elements);
 
-  std::filesystem::path file_;
-  std::string title_;
+  SQLite::Database& database() const { return file_.database(); }
+
   // Reading changes nothing that a caller could see.
-  mutable SQLite::Database database_;
+  mutable ProjectFile file_;
 };
 
 }  // namespace dowel

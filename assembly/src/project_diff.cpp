@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "dowel/assembly/joint.h"
+#include "project_database.h"
 #include "project_rows.h"
 
 namespace dowel {
@@ -34,6 +35,10 @@ bool is_same(const Mate& a, const Mate& b) {
 }
 
 }  // namespace
+
+ProjectState read_project_state(const std::filesystem::path& file) {
+  return ProjectDatabase(file, ProjectAccess::ReadOnly).read_state();
+}
 
 ProjectDiff diff(const ProjectState& a, const ProjectState& b) {
   ProjectDiff result;

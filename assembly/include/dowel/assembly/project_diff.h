@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,10 @@ struct ProjectDiff {
            mates_added.empty() && mates_changed.empty() && settings.empty();
   }
 };
+
+/// State of a project that is only looked at: the file is left as it is, of an older version, too.
+/// Throws as Project::open.
+ProjectState read_project_state(const std::filesystem::path& file);
 
 ProjectDiff diff(const ProjectState& a, const ProjectState& b);
 
