@@ -61,11 +61,12 @@ std::shared_ptr<const CollisionElement> element_of_file(ImportResult&& import,
   if (import.status != ImportResult::Status::Ok || import.parts.empty()) {
     throw Error(ErrorCode::FileMalformed, file + ": " + import.reason);
   }
-  auto solid = std::make_shared<const FacetedSolid>(std::move(import.parts.front().solid));
+  ImportedPart& part = import.parts.front();
+  auto solid = std::make_shared<const FacetedSolid>(std::move(part.solid));
   std::vector<std::uint32_t> walls;
-  if (holes == HoleMode::Paper) walls = hole_faces(*solid, recognise_features(*solid));
+  if (holes == HoleMode::Paper) walls = hole_faces(*solid, part.features);
   return std::make_shared<const CollisionElement>(
-      enclosing_box(*solid), [solid] { return solid; }, std::move(walls));
+      part.obb, [solid] { return solid; }, std::move(walls));
 }
 
 /// Reads what the scene's bodies are made of, each file and element once.

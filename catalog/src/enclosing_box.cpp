@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include <Eigen/Geometry>
+
 #include "axis.h"
 #include "dowel/catalog/recognition.h"
 #include "dowel/kernel/check.h"
@@ -15,6 +17,20 @@
 
 namespace dowel {
 namespace {
+
+/// Part of the smallest half extent that is left to an exact reach: five digits of a size are true
+/// with room to spare, and searching longer would show nowhere.
+constexpr double kReachSlackRatio = 1.0e-7;
+
+/// A quarter of what a box may be larger than the best one known. A box flush with faces is worth
+/// that much, too.
+constexpr double kWorthTurning = 2.5e-4;
+
+// The search for a better turn: how far it goes and how precisely it looks.
+constexpr double kFirstTurn_rad = 0.2;
+constexpr double kLastTurn_rad = 1.0e-4;
+constexpr double kTurnedSlackRatio = 1.0e-5;
+constexpr int kMostTurns = 64;
 
 struct Range {
   double low_mm = std::numeric_limits<double>::infinity();
@@ -123,15 +139,15 @@ double reach_mm(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
   return reach;
 }
 
-/// Box along `axes` around the exact solid.
-Obb exact_box(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
-              const Eigen::Matrix3d& axes) {
+/// Box along `axes` around what reaches as far as `reach_mm(direction)` says.
+template <class Reach>
+Obb box_along(const Eigen::Matrix3d& axes, const Reach& reach_mm) {
   Obb box;
   box.axes = axes;
   Eigen::Vector3d center;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double high = reach_mm(solid, graph, axes.col(i));
-    const double low = -reach_mm(solid, graph, -axes.col(i));
+    const double high = reach_mm(axes.col(i));
+    const double low = -reach_mm(-axes.col(i));
     center[i] = 0.5 * (low + high);
     box.half_extents_mm[i] = 0.5 * (high - low);
   }
@@ -183,21 +199,73 @@ std::optional<Eigen::Matrix3d> planar_frame(const std::vector<FaceNode>& graph) 
   return std::nullopt;
 }
 
+/// `box`, or that of the largest planar faces where it is smaller.
+template <class Reach>
+Obb smaller_square(const Obb& box, const std::vector<FaceNode>& graph, const Reach& reach_mm) {
+  const std::optional<Eigen::Matrix3d> frame = planar_frame(graph);
+  if (!frame) return box;
+  const Obb square = box_along(*frame, reach_mm);
+  return square.volume_mm3() < box.volume_mm3() * (1.0 - kBoxSlackRatio) ? square : box;
+}
+
+/// Turns the box about its own axes, by less and less, as long as it shrinks.
+template <class Reach>
+Eigen::Matrix3d turned_axes(Eigen::Matrix3d axes, const Reach& reach_mm) {
+  double volume_mm3 = box_along(axes, reach_mm).volume_mm3();
+  int turns = 0;
+  for (double step_rad = kFirstTurn_rad; step_rad > kLastTurn_rad; step_rad *= 0.5) {
+    bool is_improving = true;
+    while (is_improving && turns < kMostTurns) {
+      is_improving = false;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        for (const double angle_rad : {-step_rad, step_rad}) {
+          const Eigen::AngleAxisd turn(angle_rad, axes.col(i).normalized());
+          const Eigen::Matrix3d turned = turn.toRotationMatrix() * axes;
+          const double turned_mm3 = box_along(turned, reach_mm).volume_mm3();
+          if (turned_mm3 >= volume_mm3 * (1.0 - kTurnedSlackRatio)) continue;
+          volume_mm3 = turned_mm3;
+          axes = turned;
+          is_improving = true;
+          ++turns;
+        }
+      }
+    }
+  }
+  // Products of turns drift from right angles by rounding.
+  return Eigen::Quaterniond(axes).normalized().toRotationMatrix();
+}
+
 }  // namespace
 
 Obb enclosing_box(const FacetedSolid& solid) {
   DOWEL_EXPECTS(!solid.vertices.empty());
   const std::vector<FaceNode> graph = face_graph(solid);
+  const auto reach = [&](const Eigen::Vector3d& d) { return reach_mm(solid, graph, d); };
   const Obb facets = minimum_box(solid.vertices);
-  Obb best = exact_box(solid, graph, facets.axes);
+  Obb best = box_along(facets.axes, reach);
   // Never smaller than the box found, whose own rounding is its maker's business.
   best.half_extents_mm = best.half_extents_mm.cwiseMax(facets.half_extents_mm);
   // The facets' box may stand askew by what they leave out of a rounded corner.
-  if (const std::optional<Eigen::Matrix3d> frame = planar_frame(graph)) {
-    const Obb square = exact_box(solid, graph, *frame);
-    if (square.volume_mm3() < best.volume_mm3() * (1.0 - kBoxSlackRatio)) best = square;
-  }
-  return best;
+  return smaller_square(best, graph, reach);
+}
+
+Obb enclosing_box(const FacetedSolid& solid, const ExactReachFunction& reach_mm) {
+  DOWEL_EXPECTS(!solid.vertices.empty());
+  const Obb facets = minimum_box(solid.vertices);
+  const double slack_mm =
+      std::max(kMinTolerance_mm, kReachSlackRatio * facets.half_extents_mm.minCoeff());
+  const auto reach = [&](const Eigen::Vector3d& d) { return reach_mm(d, slack_mm); };
+  Obb box = box_along(facets.axes, reach);
+  box.half_extents_mm = box.half_extents_mm.cwiseMax(facets.half_extents_mm);
+  box = smaller_square(box, face_graph(solid), reach);
+  // No box of the solid is smaller than that of points on it: where it is hardly larger, none is
+  // worth looking for.
+  if (box.volume_mm3() <= (1.0 + kWorthTurning) * facets.volume_mm3()) return box;
+  const double coarse_mm = std::max(slack_mm, kTurnedSlackRatio * box.half_extents_mm.minCoeff());
+  const Obb turned = box_along(
+      turned_axes(box.axes, [&](const Eigen::Vector3d& d) { return reach_mm(d, coarse_mm); }),
+      reach);
+  return turned.volume_mm3() < (1.0 - kWorthTurning) * box.volume_mm3() ? turned : box;
 }
 
 }  // namespace dowel

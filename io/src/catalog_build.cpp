@@ -11,7 +11,6 @@
 
 #include "assembly_project.h"
 #include "dowel/catalog/catalog.h"
-#include "dowel/catalog/recognition.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "library_manifest.h"
@@ -21,7 +20,7 @@ namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 5;
+constexpr int kPipelineVersion = 6;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {
@@ -102,7 +101,7 @@ std::string family_of(const std::string& name) {
   return slash == std::string::npos ? "" : name.substr(0, slash);
 }
 
-/// The element that a part makes, with what is recognised on it. Throws Error{FileMalformed} where
+/// The element that a part makes. Throws Error{FileMalformed} where
 /// that is not sound.
 ElementRecord make_record(ImportedPart&& part, const SourceRecord& source,
                           const std::string& licence, const ElementDesign* design) {
@@ -122,11 +121,11 @@ ElementRecord make_record(ImportedPart&& part, const SourceRecord& source,
   for (const Face& face : part.solid.faces) {
     element.facet_error_mm = std::max(element.facet_error_mm, face.facet_error_mm);
   }
-  element.features = recognise_features(part.solid);
-  element.bolt_circles = find_bolt_circles(element.features);
-  element.shape = classify_shape(part.solid, element.features);
-  element.triangles = count_triangles(part.solid, classify_faces(part.solid, element.features));
-  element.obb = enclosing_box(part.solid);
+  element.features = std::move(part.features);
+  element.bolt_circles = std::move(part.bolt_circles);
+  element.shape = part.shape;
+  element.triangles = part.triangles;
+  element.obb = part.obb;
   std::optional<std::string> defect;
   if (design != nullptr) defect = add_design(*design, element);
   if (!defect) defect = find_defect(element);
@@ -292,7 +291,7 @@ bool Build::store(Job& job, ImportResult&& result) {
         records.push_back(make_record(std::move(part), job.source, job.licence, job.design));
       }
     } catch (const std::exception& error) {
-      // A part that recognition cannot take costs its file, not the build.
+      // A part that the catalogue cannot take costs its file, not the build.
       records.clear();
       job.built.faces = 0;
       job.built.status = BuildStatus::Failed;

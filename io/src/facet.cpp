@@ -431,7 +431,6 @@ FacetedShape facet(const TopoDS_Shape& shape, const FacetOptions& options) {
     result.solid.solid_count = static_cast<std::uint32_t>(solids.size());
     separate_touching(result.solid);
     result.shape = compound_of(solids);
-    BRepTools::Clean(result.shape);
     if (const auto defect = find_defect(result.solid)) {
       throw Error(ErrorCode::FileMalformed, "mesh is not closed: " + *defect);
     }

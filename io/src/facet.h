@@ -18,7 +18,7 @@ struct FacetOptions {
 
 struct FacetedShape {
   FacetedSolid solid;  ///< `find_defect` returns nothing
-  TopoDS_Shape shape;  ///< the solids that it stands for, outward, without facets
+  TopoDS_Shape shape;  ///< the solids that it stands for, outward, with the mesher's facets
   /// Faces whose boundary lies off the surface that they claim by more than the deflection. They
   /// stand as free-form ones: nobody can tell which of the two was meant.
   std::size_t misplaced_faces = 0;

@@ -13,10 +13,12 @@
 #include <BinTools.hxx>
 #include <GProp_GProps.hxx>
 
+#include "dowel/catalog/recognition.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/mass_properties.h"
 #include "dowel/kernel/tolerance.h"
+#include "exact_reach.h"
 #include "facet.h"
 #include "mesh_reader.h"
 #include "occt.h"
@@ -88,13 +90,20 @@ std::vector<std::string> part_warnings(const FacetedShape& facets, const std::st
           " boundary off the surface that the file gives"};
 }
 
+void recognise(ImportedPart& part) {
+  part.features = recognise_features(part.solid);
+  part.bolt_circles = find_bolt_circles(part.features);
+  part.shape = classify_shape(part.solid, part.features);
+  part.triangles = count_triangles(part.solid, classify_faces(part.solid, part.features));
+}
+
 ImportedPart import_part(const StepPart& from, const std::string& name,
                          const ImportOptions& options, const StageReport& report,
                          std::vector<std::string>& warnings) {
   report(WorkerStage::Mesh);
   const FacetedShape facets = facet(
       from.shape, {options.deflection_mm, options.angular_deflection_rad, options.max_triangles});
-  report(WorkerStage::Features);
+  report(WorkerStage::Volume);
   ImportedPart part;
   part.solid = facets.solid;
   part.name = name;
@@ -104,6 +113,10 @@ ImportedPart import_part(const StepPart& from, const std::string& name,
     set_mass(facets.shape, part);
     part.brep = brep_bytes(facets.shape);
   });
+  report(WorkerStage::Features);
+  recognise(part);
+  report(WorkerStage::Box);
+  part.obb = guarded("the search for its smallest box failed", [&] { return exact_box(facets); });
   return part;
 }
 
@@ -150,6 +163,10 @@ ImportResult import_mesh(const std::filesystem::path& file, const StageReport& r
   part.volume_mm3 = mass.volume_mm3;
   part.surface_mm2 = mass.surface_mm2;
   part.center_of_mass = mass.center_of_mass;
+  report(WorkerStage::Features);
+  recognise(part);
+  report(WorkerStage::Box);
+  part.obb = enclosing_box(part.solid);
   ImportResult result;
   result.status = ImportResult::Status::Ok;
   result.instances.push_back({part.name, 0, Pose()});

@@ -215,7 +215,7 @@ void Child::take(std::span<const std::byte> bytes) {
   while (kind_ == 0 && !bytes.empty()) {
     const auto value = std::to_integer<std::uint8_t>(bytes.front());
     bytes = bytes.subspan(1);
-    if (value <= static_cast<std::uint8_t>(WorkerStage::Features)) {
+    if (value <= static_cast<std::uint8_t>(WorkerStage::Box)) {
       stage_ = WorkerStage{value};
     } else {
       kind_ = value;
@@ -322,8 +322,12 @@ const char* stage_name(WorkerStage stage) {
       return "transfer";
     case WorkerStage::Mesh:
       return "mesh";
+    case WorkerStage::Volume:
+      return "volume";
     case WorkerStage::Features:
       return "features";
+    case WorkerStage::Box:
+      return "box";
   }
   return "unknown stage";
 }

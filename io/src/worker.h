@@ -9,7 +9,7 @@
 namespace dowel {
 
 /// What a child is busy with; named in the reason when it dies.
-enum class WorkerStage : std::uint8_t { Start, Read, Transfer, Mesh, Features };
+enum class WorkerStage : std::uint8_t { Start, Read, Transfer, Mesh, Volume, Features, Box };
 
 const char* stage_name(WorkerStage stage);
 

@@ -9,12 +9,11 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Random.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/convex_hull_3.h>
-#include <CGAL/optimal_bounding_box.h>
 #include <catch2/catch.hpp>
 
+#include "cgal_box.h"
 #include "dowel/kernel/convex_hull.h"
 #include "dowel/kernel/minimum_box.h"
 #include "dowel/kernel/predicates.h"
@@ -40,15 +39,6 @@ double hull_volume_mm3(const Points& points, const dowel::ConvexHull& hull) {
         (points[t[0]] - origin).dot((points[t[1]] - origin).cross(points[t[2]] - origin)) / 6.0;
   }
   return volume_mm3;
-}
-
-double cgal_box_volume_mm3(const Points& points) {
-  CGAL::get_default_random() = CGAL::Random(1);  // the search is a random one
-  std::array<Kernel::Point_3, 8> corners;
-  CGAL::oriented_bounding_box(to_cgal(points), corners, CGAL::parameters::use_convex_hull(true));
-  return std::sqrt((corners[1] - corners[0]).squared_length() *
-                   (corners[3] - corners[0]).squared_length() *
-                   (corners[5] - corners[0]).squared_length());
 }
 
 struct Cloud {

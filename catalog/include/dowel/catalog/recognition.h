@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "dowel/catalog/element.h"
@@ -26,8 +27,13 @@ std::vector<FacetClass> classify_faces(const FacetedSolid& solid,
 
 TriangleCounts count_triangles(const FacetedSolid& solid, const std::vector<FacetClass>& classes);
 
-/// Smallest box of the facets grown by what the exact faces can stand out of them, so that it
-/// contains the exact solid.
+/// Largest `direction . p` over an exact solid for a unit vector, from above, by `slack_mm` at
+/// most.
+using ExactReachFunction = std::function<double(const Eigen::Vector3d& direction, double slack_mm)>;
+
+/// Smallest box that was found around the exact solid. From the facets alone it is grown by what
+/// the faces can stand out of them; with the exact reach it fits to some ten thousandths.
 Obb enclosing_box(const FacetedSolid& solid);
+Obb enclosing_box(const FacetedSolid& solid, const ExactReachFunction& reach_mm);
 
 }  // namespace dowel

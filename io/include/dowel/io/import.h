@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dowel/catalog/element.h"
 #include "dowel/kernel/faceted_solid.h"
 #include "dowel/kernel/pose.h"
 
@@ -27,7 +28,8 @@ struct ImportOptions {
 
 inline constexpr std::size_t kMaxInstances = 100'000;
 
-/// One distinct part of a file, in its own frame.
+/// One distinct part of a file, in its own frame, with what is recognised on it
+/// (catalog/recognition.h).
 struct ImportedPart {
   std::string name;  ///< product name as UTF-8, or the file's stem where it has no usable one
   std::string unit_in_file;
@@ -36,6 +38,11 @@ struct ImportedPart {
   double surface_mm2 = 0.0;  ///< of the exact solid
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
   std::optional<std::array<double, 3>> colour;  ///< sRGB 0..1
+  Obb obb;                                      ///< smallest box found around the exact solid
+  std::vector<Feature> features;
+  std::vector<BoltCircle> bolt_circles;
+  ShapeClass shape = ShapeClass::Compound;
+  TriangleCounts triangles;
   std::vector<std::byte> brep;  ///< OpenCascade's binary format; empty for mesh files
 };
 
@@ -64,9 +71,10 @@ struct ImportResult {
 bool is_step_file(const std::filesystem::path& file);
 bool is_mesh_file(const std::filesystem::path& file);
 
-/// Reads a STEP or mesh file. STEP is read in a child process with limits on time and memory: the
-/// reader crashes on damaged files and keeps global state. Never throws for a bad file: that is a
-/// Failed result. The child is forked: expects that no other thread of the process is running.
+/// Reads a STEP or mesh file and recognises features, in a child process with limits on time and
+/// memory: the STEP reader crashes on damaged files and keeps global state. Never throws for a bad
+/// file: that is a Failed result. The child is forked: expects that no other thread of the process
+/// is running.
 ImportResult import_file(const std::filesystem::path& file, const ImportOptions& options);
 
 /// The same for many files, `jobs` children at a time. `on_done(i, result)` is called in the
