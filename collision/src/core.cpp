@@ -303,7 +303,8 @@ class CoreFinder {
     std::vector<CylinderSurface> known;
     for (std::uint32_t f = 0; f < model_.face_count(); ++f) {
       const auto* cylinder = std::get_if<CylinderSurface>(&model_.face(f).surface);
-      if (cylinder == nullptr) continue;
+      // Inside the wall of a hole there is no material.
+      if (cylinder == nullptr || model_.face(f).reversed) continue;
       if (std::ranges::any_of(known, [&](const auto& k) { return is_same(k, *cylinder); })) {
         continue;
       }
