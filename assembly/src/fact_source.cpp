@@ -6,19 +6,13 @@
 
 #include "dowel/assembly/fit.h"
 #include "fixture_result.h"
+#include "instance_boxes.h"
 
 namespace dowel {
 namespace {
 
-/// Beyond so many parts that changed, all pairs at once are faster.
-constexpr std::size_t kFewChanged = 8;
-
-void sort_by_name(std::vector<Touch>& touches) {
-  for (Touch& touch : touches) {
-    if (touch.with < touch.instance) std::swap(touch.instance, touch.with);
-  }
-  std::ranges::sort(touches, {},
-                    [](const Touch& touch) { return std::tie(touch.instance, touch.with); });
+std::tuple<const std::string&, const std::string&> names_of(const Touch& touch) {
+  return std::tie(touch.instance, touch.with);
 }
 
 /// Names of instances that are in one of the two states alone, or differ.
@@ -77,47 +71,42 @@ unsigned FactSource::update() {
   return changed;
 }
 
-const std::vector<Touch>& FactSource::updated(Pairs& pairs, double tolerance_mm) {
+void FactSource::update_pairs(Pairs& pairs, double gap_mm, const std::vector<Touch>* but) {
   bodies_.follow(state_);
-  const bool is_new = !pairs.touches || pairs.tolerance_mm != tolerance_mm;
+  const bool is_new =
+      !pairs.touches || pairs.gap_mm != gap_mm || pairs.of.tolerance_mm != state_.tolerance_mm;
   const std::set<std::string> changed =
       is_new ? std::set<std::string>() : changed_parts(pairs.of, state_);
-  if (!is_new && changed.empty()) return *pairs.touches;
-  std::vector<Touch> found;
-  if (is_new || changed.size() > kFewChanged) {
-    pairs.touches.emplace();
-    found = bodies_.check_all(tolerance_mm);
-  } else {
-    std::erase_if(*pairs.touches, [&](const Touch& touch) {
-      return changed.contains(touch.instance) || changed.contains(touch.with);
-    });
-    for (const std::string& name : changed) {
-      const Instance* instance = state_.find(name);
-      if (instance == nullptr) continue;
-      for (Touch& touch : bodies_.check(name, instance->X_WI, tolerance_mm)) {
-        // Of two that changed, one is enough.
-        if (changed.contains(touch.with) && touch.with < name) continue;
-        found.push_back(std::move(touch));
-      }
+  if (!is_new && changed.empty()) return;
+  if (is_new) pairs.touches.emplace();
+  // What two parts that stay where they are do to each other stays, too.
+  std::erase_if(*pairs.touches, [&](const Touch& touch) {
+    return changed.contains(touch.instance) || changed.contains(touch.with);
+  });
+  const auto element_of = [this](const Instance& instance) -> const Element& {
+    return element(instance);
+  };
+  for (const auto& [a, b] : near_pairs(state_, element_of, gap_mm, is_new ? nullptr : &changed)) {
+    if (but != nullptr &&
+        std::ranges::binary_search(*but, std::tie(a->name, b->name), {}, names_of)) {
+      continue;
     }
+    const PairVerdict pair = bodies_.pair(a->name, b->name, gap_mm);
+    if (pair.verdict != Verdict::Clear) pairs.touches->push_back({a->name, b->name, pair});
   }
-  sort_by_name(found);
-  for (Touch& touch : found) {
-    touch.pair = bodies_.pair(touch.instance, touch.with, tolerance_mm);
-    pairs.touches->push_back(std::move(touch));
-  }
-  sort_by_name(*pairs.touches);
+  std::ranges::sort(*pairs.touches, {}, names_of);
   pairs.of = state_;
-  pairs.tolerance_mm = tolerance_mm;
-  return *pairs.touches;
+  pairs.gap_mm = gap_mm;
 }
 
 const std::vector<Touch>& FactSource::touches() {
-  return updated(touching_, state_.tolerance_mm);
+  update_pairs(touching_, state_.tolerance_mm, nullptr);
+  return *touching_.touches;
 }
 
 const std::vector<Touch>& FactSource::nearer_than(double gap_mm) {
-  return updated(near_, gap_mm);
+  update_pairs(near_, gap_mm, &touches());
+  return *near_.touches;
 }
 
 const std::vector<AxisPair>& FactSource::axes() {

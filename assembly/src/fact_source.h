@@ -43,7 +43,7 @@ class FactSource {
 
   /// Pairs that are not clear at the project's tolerance, by name.
   const std::vector<Touch>& touches();
-  /// Pairs that are nearer than `gap_mm`, touching ones included, by name.
+  /// Pairs that do not touch and are nearer than `gap_mm`, by name.
   const std::vector<Touch>& nearer_than(double gap_mm);
   const std::vector<AxisPair>& axes();
   const std::vector<Holding>& holdings();
@@ -60,13 +60,14 @@ class FactSource {
   const PlacedBodies& bodies() const { return bodies_; }
 
  private:
-  /// Pairs at one tolerance, and the state that they are of.
+  /// Pairs that are no farther apart than a gap, and the state that they are of.
   struct Pairs {
     ProjectState of;
-    double tolerance_mm = 0.0;
+    double gap_mm = 0.0;
     std::optional<std::vector<Touch>> touches;
   };
-  const std::vector<Touch>& updated(Pairs& pairs, double tolerance_mm);
+  /// Asks anew about the parts that changed alone; `but` are left out.
+  void update_pairs(Pairs& pairs, double gap_mm, const std::vector<Touch>* but);
 
   Session& session_;
   ProjectState state_;

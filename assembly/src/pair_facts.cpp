@@ -37,10 +37,7 @@ FactRows clearances(FactSource& source) {
       kMaxTolerance_mm, std::max(design.limit("gap_element_mm"), design.limit("gap_workpiece_mm")));
   FactRows rows;
   if (reach_mm <= source.state().tolerance_mm) return rows;
-  std::vector<std::pair<std::string, std::string>> known;
-  for (const Touch& touch : source.touches()) known.emplace_back(touch.instance, touch.with);
   for (const Touch& near : source.nearer_than(reach_mm)) {
-    if (std::ranges::binary_search(known, std::pair(near.instance, near.with))) continue;
     const Eigen::Vector3d& at = near.pair.witness_W;
     rows.push_back({near.instance, near.with, near.pair.gap_mm, at.x(), at.y(), at.z()});
   }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "fact_source.h"
+#include "instance_boxes.h"
 
 namespace dowel {
 namespace {
@@ -12,20 +13,11 @@ FactValue number_or_null(const std::optional<double>& value) {
   return value ? FactValue(*value) : FactValue();
 }
 
-/// The box of the element's smallest box, square to the world.
-Eigen::AlignedBox3d reach_of(const Instance& instance, const Element& element) {
-  const Obb& box = element.obb;
-  const Eigen::Matrix3d axes_W = instance.X_WI.rotation() * box.axes;
-  const Eigen::Vector3d center_W = instance.X_WI * box.center;
-  const Eigen::Vector3d half_mm = axes_W.cwiseAbs() * box.half_extents_mm;
-  return {center_W - half_mm, center_W + half_mm};
-}
-
 FactRows instances(FactSource& source) {
   FactRows rows;
   for (const auto& [name, instance] : source.state().instances) {
     const Element& element = source.element(instance);
-    const Eigen::AlignedBox3d reach = reach_of(instance, element);
+    const Eigen::AlignedBox3d reach = box_around(instance, element);
     const Eigen::Vector3d& at = instance.X_WI.translation();
     const Eigen::Vector3d center = instance.X_WI * element.center_of_mass;
     rows.push_back({name, instance.element, element.family,
