@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "dowel/assembly/thread.h"
@@ -78,26 +79,35 @@ std::optional<AxisPair> pair_of(const PlacedAxis& shaft, const PlacedAxis& hole)
 
 }  // namespace
 
-std::vector<AxisPair> axis_pairs(const ProjectState& state,
-                                 const std::function<const Element&(const Instance&)>& element_of) {
-  std::vector<PlacedAxis> shafts;
-  std::vector<PlacedAxis> holes;
+std::vector<AxisPair> axis_pairs(const ProjectState& state, const ElementOf& element_of) {
+  struct Axes {
+    std::vector<PlacedAxis> shafts;
+    std::vector<PlacedAxis> holes;
+  };
+  std::map<const Instance*, Axes> axes;
   for (const auto& [name, instance] : state.instances) {
+    Axes& of = axes[&instance];
     for (const Feature& feature : element_of(instance).features) {
       const bool is_hole = feature.kind == FeatureKind::Hole || is_slotted_hole(feature);
       if (!is_hole && feature.kind != FeatureKind::Shaft) continue;
       PlacedAxis axis{&instance, &feature, instance.X_WI * feature.origin,
                       instance.X_WI.rotation() * feature.direction};
       if (is_slotted_hole(feature)) axis.run_W = instance.X_WI.rotation() * feature.slot->run;
-      (is_hole ? holes : shafts).push_back(axis);
+      (is_hole ? of.holes : of.shafts).push_back(axis);
     }
   }
   std::vector<AxisPair> pairs;
-  for (const PlacedAxis& shaft : shafts) {
-    for (const PlacedAxis& hole : holes) {
-      if (shaft.instance == hole.instance) continue;
-      if (auto pair = pair_of(shaft, hole)) pairs.push_back(std::move(*pair));
+  const auto add = [&](const Axes& of_shafts, const Axes& of_holes) {
+    for (const PlacedAxis& shaft : of_shafts.shafts) {
+      for (const PlacedAxis& hole : of_holes.holes) {
+        if (auto pair = pair_of(shaft, hole)) pairs.push_back(std::move(*pair));
+      }
     }
+  };
+  // A shaft that is in a hole is in the box around it.
+  for (const auto& [a, b] : near_pairs(state, element_of, 0.0, nullptr)) {
+    add(axes.at(a), axes.at(b));
+    add(axes.at(b), axes.at(a));
   }
   std::ranges::stable_sort(pairs, {}, [](const AxisPair& pair) {
     return std::tie(pair.shaft_instance, pair.hole_instance, pair.shaft->name, pair.hole->name);

@@ -2,11 +2,11 @@
 
 // Shafts that stand in holes, whatever the mates say. Internal to the rule engine.
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "dowel/assembly/project.h"
+#include "instance_boxes.h"
 
 namespace dowel {
 
@@ -29,7 +29,6 @@ struct AxisPair {
 
 /// Sorted by instances and features. `element_of`: an instance's element; its features are pointed
 /// to.
-std::vector<AxisPair> axis_pairs(const ProjectState& state,
-                                 const std::function<const Element&(const Instance&)>& element_of);
+std::vector<AxisPair> axis_pairs(const ProjectState& state, const ElementOf& element_of);
 
 }  // namespace dowel

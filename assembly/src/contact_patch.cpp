@@ -17,6 +17,8 @@ namespace {
 /// Planes that are tilted by less touch as planes: kCoaxial_rad, 0.01 mm over 100 mm.
 constexpr double kFlat_rad = kCoaxial_rad;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// A polygon in the plane, of at most a triangle cut by a triangle.
 using Polygon = std::vector<Eigen::Vector2d>;
 
@@ -80,19 +82,27 @@ std::vector<PlanarFace> planar_faces(const FacetedSolid& solid, const Pose& X_WS
   return faces;
 }
 
-/// Facets of the faces, flat in `frame`.
+/// Facets of the faces, flat in `frame`: those that reach into `within`.
 std::vector<FlatTriangle> flattened(const FacetedSolid& solid, const Pose& X_WS,
                                     const std::vector<std::uint32_t>& faces,
-                                    const PlaneFrame& frame) {
+                                    const PlaneFrame& frame, const Eigen::AlignedBox2d& within) {
+  std::vector<bool> is_wanted(solid.faces.size(), false);
+  for (const std::uint32_t face : faces) is_wanted[face] = true;
+  // A base plate has tens of thousands of facets: the plane's axes go to them, not they to it.
+  const Eigen::Matrix3d R_SW = X_WS.rotation().toRotationMatrix().transpose();
+  const Eigen::Vector3d x_S = R_SW * frame.x;
+  const Eigen::Vector3d y_S = R_SW * frame.y;
+  const Eigen::Vector2d origin = frame.flat(X_WS.translation());
   std::vector<FlatTriangle> result;
   for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
-    if (std::ranges::find(faces, solid.face_of[t]) == faces.end()) continue;
+    if (!is_wanted[solid.face_of[t]]) continue;
     FlatTriangle flat;
     const auto corners = solid.corners(t);
     for (std::size_t i = 0; i < 3; ++i) {
-      flat.corners[i] = frame.flat(X_WS * corners[i]);
+      flat.corners[i] = origin + Eigen::Vector2d(x_S.dot(corners[i]), y_S.dot(corners[i]));
       flat.box.extend(flat.corners[i]);
     }
+    if (!flat.box.intersects(within)) continue;
     if (cross(flat.corners[1] - flat.corners[0], flat.corners[2] - flat.corners[0]) < 0.0) {
       std::swap(flat.corners[1], flat.corners[2]);
     }
@@ -101,12 +111,17 @@ std::vector<FlatTriangle> flattened(const FacetedSolid& solid, const Pose& X_WS,
   return result;
 }
 
+Eigen::AlignedBox2d extent_of(const std::vector<FlatTriangle>& triangles) {
+  Eigen::AlignedBox2d extent;
+  for (const FlatTriangle& triangle : triangles) extent.extend(triangle.box);
+  return extent;
+}
+
 ContactPatch overlap(const std::vector<FlatTriangle>& a, const std::vector<FlatTriangle>& b,
                      const PlaneFrame& frame) {
   ContactPatch patch;
   patch.normal_W = frame.normal;
-  Eigen::AlignedBox2d reach;
-  for (const FlatTriangle& triangle : b) reach.extend(triangle.box);
+  const Eigen::AlignedBox2d reach = extent_of(b);
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
   Polygon all;
   for (const FlatTriangle& first : a) {
@@ -234,11 +249,22 @@ std::vector<ContactPatch> plane_patches(const FacetedSolid& a, const Pose& X_WA,
       add(known->of_b, second.face);
     }
   }
+  const Eigen::AlignedBox2d everywhere(Eigen::Vector2d::Constant(-kInfinity),
+                                       Eigen::Vector2d::Constant(kInfinity));
   std::vector<ContactPatch> patches;
   for (const SharedPlane& plane : planes) {
     const PlaneFrame frame = frame_of(plane.plane_W);
-    ContactPatch patch = overlap(flattened(a, X_WA, plane.of_a, frame),
-                                 flattened(b, X_WB, plane.of_b, frame), frame);
+    // The smaller of the two tells which facets of the larger matter.
+    std::vector<FlatTriangle> flat_a;
+    std::vector<FlatTriangle> flat_b;
+    if (a.triangles.size() <= b.triangles.size()) {
+      flat_a = flattened(a, X_WA, plane.of_a, frame, everywhere);
+      flat_b = flattened(b, X_WB, plane.of_b, frame, extent_of(flat_a));
+    } else {
+      flat_b = flattened(b, X_WB, plane.of_b, frame, everywhere);
+      flat_a = flattened(a, X_WA, plane.of_a, frame, extent_of(flat_b));
+    }
+    ContactPatch patch = overlap(flat_a, flat_b, frame);
     if (patch.area_mm2 > 0.0) patches.push_back(std::move(patch));
   }
   std::ranges::stable_sort(patches, std::ranges::greater{}, &ContactPatch::area_mm2);

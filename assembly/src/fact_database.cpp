@@ -6,7 +6,9 @@
 #include <exception>
 #include <map>
 #include <new>
+#include <optional>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include <sqlite3.h>
@@ -35,25 +37,48 @@ constexpr std::array<std::string_view, 16> kRefusedFunctions{
 
 }  // namespace
 
-/// One virtual table and its indices by column, made when a query first looks one up.
+/// One virtual table and its indices, made when a query first looks something up.
 struct FactModule {
+  /// Rows by the texts that they have in the index's columns.
+  using Index = std::unordered_map<std::string, std::vector<std::size_t>>;
+
   FactDatabase::RowsOf* rows = nullptr;
   std::size_t table = 0;
   std::exception_ptr* thrown = nullptr;
-  using Index = std::map<FactValue, std::vector<std::size_t>>;
-  std::map<int, Index> indices;
+  std::map<unsigned, Index> indices;  ///< by the bits of their columns
 
-  const Index& index(int column) {
-    const auto [entry, is_new] = indices.try_emplace(column);
+  const Index& index(unsigned columns) {
+    const auto [entry, is_new] = indices.try_emplace(columns);
     if (is_new) {
       const FactRows& all = (*rows)(table);
       for (std::size_t i = 0; i < all.size(); ++i) {
-        entry->second[all[i][static_cast<std::size_t>(column)]].push_back(i);
+        if (const auto key = key_of(all[i], columns)) entry->second[*key].push_back(i);
       }
     }
     return entry->second;
   }
+
+  static void add_to_key(std::string& key, std::string_view text) {
+    key += std::to_string(text.size());
+    key += ':';
+    key += text;
+  }
+
+  /// Nothing where a column holds no text: it equals none.
+  static std::optional<std::string> key_of(const FactRow& row, unsigned columns) {
+    std::string key;
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if ((columns >> column & 1U) == 0) continue;
+      const auto* const text = std::get_if<std::string>(&row[column]);
+      if (text == nullptr) return std::nullopt;
+      add_to_key(key, *text);
+    }
+    return key;
+  }
 };
+
+/// Bits of an index that SQLite keeps as an int.
+constexpr int kMaxIndexColumns = 31;
 
 namespace {
 
@@ -95,24 +120,34 @@ int disconnect(sqlite3_vtab* table) {
   return SQLITE_OK;
 }
 
-/// One equality is looked up in an index, the rest SQLite tests by itself.
+/// Equalities are looked up in an index of their columns; SQLite tests them all again.
 int best_index(sqlite3_vtab*, sqlite3_index_info* info) {
-  info->estimatedCost = 1.0e4;
-  info->estimatedRows = 1000;
+  constexpr double kRows = 1000.0;
+  constexpr double kShare = 0.02;  // of the rows that have one text in a column
+  std::array<int, kMaxIndexColumns> constraint_on{};
+  constraint_on.fill(-1);
   for (int i = 0; i < info->nConstraint; ++i) {
     const auto& constraint = info->aConstraint[i];
     if (constraint.usable == 0 || constraint.op != SQLITE_INDEX_CONSTRAINT_EQ ||
-        constraint.iColumn < 0) {
+        constraint.iColumn < 0 || constraint.iColumn >= kMaxIndexColumns) {
       continue;
     }
     // A value that compares equal in another type or collation has another place in the index.
     if (std::strcmp(sqlite3_vtab_collation(info, i), "BINARY") != 0) continue;
-    info->idxNum = constraint.iColumn + 1;
-    info->aConstraintUsage[i].argvIndex = 1;
-    info->estimatedCost = 10.0;
-    info->estimatedRows = 10;
-    return SQLITE_OK;
+    constraint_on[static_cast<std::size_t>(constraint.iColumn)] = i;
   }
+  double rows = kRows;
+  int values = 0;
+  unsigned columns = 0;
+  for (std::size_t column = 0; column < constraint_on.size(); ++column) {
+    if (constraint_on[column] < 0) continue;
+    info->aConstraintUsage[constraint_on[column]].argvIndex = ++values;
+    columns |= 1U << column;
+    rows *= kShare;
+  }
+  info->idxNum = static_cast<int>(columns);
+  info->estimatedCost = rows + 1.0;
+  info->estimatedRows = static_cast<sqlite3_int64>(rows + 1.0);
   return SQLITE_OK;
 }
 
@@ -126,8 +161,23 @@ int close_cursor(sqlite3_vtab_cursor* cursor) {
   return SQLITE_OK;
 }
 
-int filter(sqlite3_vtab_cursor* base, int column_and_one, const char*, int,
-           sqlite3_value** values) {
+/// The columns whose value is a text, and what to look up: 1 and 1.0 are equal to SQLite, so that
+/// numbers are left to it.
+std::pair<unsigned, std::string> key_of(unsigned columns, sqlite3_value** values) {
+  std::pair<unsigned, std::string> key;
+  for (unsigned column = 0; columns >> column != 0; ++column) {
+    if ((columns >> column & 1U) == 0) continue;
+    sqlite3_value* const value = *values++;
+    if (sqlite3_value_type(value) != SQLITE_TEXT) continue;
+    key.first |= 1U << column;
+    const auto* text = reinterpret_cast<const char*>(sqlite3_value_text(value));
+    FactModule::add_to_key(key.second,
+                           {text, static_cast<std::size_t>(sqlite3_value_bytes(value))});
+  }
+  return key;
+}
+
+int filter(sqlite3_vtab_cursor* base, int columns, const char*, int, sqlite3_value** values) {
   static const std::vector<std::size_t> kNone;
   auto* const cursor = static_cast<Cursor*>(base);
   FactModule& facts = module_of(base);
@@ -135,11 +185,10 @@ int filter(sqlite3_vtab_cursor* base, int column_and_one, const char*, int,
     cursor->rows = &(*facts.rows)(facts.table);
     cursor->next = 0;
     cursor->found = nullptr;
-    // Only texts are looked up: 1 and 1.0 are equal to SQLite.
-    if (column_and_one > 0 && sqlite3_value_type(values[0]) == SQLITE_TEXT) {
-      const auto* text = reinterpret_cast<const char*>(sqlite3_value_text(values[0]));
-      const auto& index = facts.index(column_and_one - 1);
-      const auto entry = index.find(FactValue(std::string(text)));
+    const auto [text_columns, key] = key_of(static_cast<unsigned>(columns), values);
+    if (text_columns != 0) {
+      const auto& index = facts.index(text_columns);
+      const auto entry = index.find(key);
       cursor->found = entry == index.end() ? &kNone : &entry->second;
     }
     return SQLITE_OK;
@@ -168,7 +217,8 @@ int column(sqlite3_vtab_cursor* base, sqlite3_context* context, int number) {
   } else if (const auto* const real = std::get_if<double>(&value)) {
     sqlite3_result_double(context, *real);
   } else if (const auto* const text = std::get_if<std::string>(&value)) {
-    sqlite3_result_text(context, text->data(), static_cast<int>(text->size()), SQLITE_TRANSIENT);
+    // The rows stay while a query runs.
+    sqlite3_result_text(context, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
   } else {
     sqlite3_result_null(context);
   }
@@ -230,22 +280,35 @@ struct FactDatabase::Impl {
   std::vector<std::unique_ptr<FactModule>> modules;
   std::exception_ptr thrown;
   sqlite3* database = nullptr;
-  std::set<std::size_t>* reads = nullptr;  ///< of the query that is being prepared
-  std::string refused;                     ///< what the authorizer did not let pass
+  FactReads* reads = nullptr;  ///< of the query that is being prepared
+  std::string refused;         ///< what the authorizer did not let pass
   int looks = 0;
 
-  int authorize(int action, const char* first);
+  int authorize(int action, const char* first, const char* second);
 };
 
+namespace {
+
+/// SQLite names no column where a query counts rows alone.
+void note_read(std::set<std::size_t>& columns, const FactTable& table, const char* column) {
+  const auto found =
+      std::ranges::find(table.columns, std::string_view(column ? column : ""),
+                        [](const FactColumn& c) { return std::string_view(c.name); });
+  if (found == table.columns.end()) return;
+  columns.insert(static_cast<std::size_t>(found - table.columns.begin()));
+}
+
+}  // namespace
+
 /// Called by SQLite for all that a statement would do.
-int FactDatabase::Impl::authorize(int action, const char* first) {
+int FactDatabase::Impl::authorize(int action, const char* first, const char* second) {
   const std::string_view name = first != nullptr ? first : "";
   if (action == SQLITE_SELECT || action == SQLITE_RECURSIVE) return SQLITE_OK;
   if (action == SQLITE_READ) {
     const auto& tables = fact_tables();
     for (std::size_t i = 0; i < tables.size(); ++i) {
       if (name != tables[i].name) continue;
-      if (reads != nullptr) reads->insert(i);
+      if (reads != nullptr) note_read((*reads)[i], tables[i], second);
       return SQLITE_OK;
     }
     if (name != "sqlite_master" && name != "sqlite_schema") return SQLITE_OK;  // WITH, subqueries
@@ -259,14 +322,14 @@ int FactDatabase::Impl::authorize(int action, const char* first) {
 
 struct FactDatabase::Query::Impl {
   sqlite3_stmt* statement = nullptr;
-  std::set<std::size_t> reads;
+  FactReads reads;
 };
 
 FactDatabase::Query::Query(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 FactDatabase::Query::~Query() {
   sqlite3_finalize(impl_->statement);
 }
-const std::set<std::size_t>& FactDatabase::Query::reads() const {
+const FactReads& FactDatabase::Query::reads() const {
   return impl_->reads;
 }
 
@@ -277,6 +340,7 @@ FactDatabase::FactDatabase(RowsOf rows) : impl_(std::make_unique<Impl>()) {
     throw std::bad_alloc();
   }
   for (std::size_t i = 0; i < fact_tables().size(); ++i) {
+    DOWEL_EXPECTS(fact_tables()[i].columns.size() <= kMaxIndexColumns);
     auto& module = impl_->modules.emplace_back(std::make_unique<FactModule>());
     module->rows = &impl_->rows;
     module->table = i;
@@ -302,10 +366,11 @@ FactDatabase::FactDatabase(RowsOf rows) : impl_(std::make_unique<Impl>()) {
       [](void* impl, int action, const char* first, const char* second, const char*, const char*) {
         auto* const self = static_cast<Impl*>(impl);
         if (action == SQLITE_FUNCTION) {
-          return second != nullptr && !is_refused(second) ? SQLITE_OK
-                                                          : self->authorize(action, second);
+          return second != nullptr && !is_refused(second)
+                     ? SQLITE_OK
+                     : self->authorize(action, second, nullptr);
         }
-        return self->authorize(action, first);
+        return self->authorize(action, first, second);
       },
       impl_.get());
   sqlite3_progress_handler(
@@ -364,8 +429,11 @@ FactAnswer FactDatabase::run(Query& query) {
   return answer;
 }
 
-void FactDatabase::forget(std::size_t table) {
-  impl_->modules.at(table)->indices.clear();
+void FactDatabase::forget(std::size_t table, const std::set<std::size_t>& columns) {
+  unsigned bits = 0;
+  for (const std::size_t column : columns) bits |= 1U << column;
+  std::erase_if(impl_->modules.at(table)->indices,
+                [&](const auto& index) { return (index.first & bits) != 0; });
 }
 
 }  // namespace dowel

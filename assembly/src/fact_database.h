@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -27,6 +28,9 @@ struct FactQueryError {
   bool has_offset = false;
 };
 
+/// Columns by table, both as in `fact_tables()`. A table without columns has its rows counted.
+using FactReads = std::map<std::size_t, std::set<std::size_t>>;
+
 /// An in-memory database in which each fact table is a virtual table, filled by `rows` when a query
 /// first reads it. Queries may read the tables and call SQLite's functions that depend on their
 /// arguments alone; SQLite's authorizer refuses all else, and a query that takes too many steps is
@@ -47,8 +51,8 @@ class FactDatabase {
     ~Query();
     Query(const Query&) = delete;
     Query& operator=(const Query&) = delete;
-    /// Indices of the tables that it reads, by the authorizer.
-    const std::set<std::size_t>& reads() const;
+    /// What it reads, by the authorizer.
+    const FactReads& reads() const;
 
    private:
     friend class FactDatabase;
@@ -61,8 +65,8 @@ class FactDatabase {
   std::unique_ptr<Query> prepare(const std::string& sql);
   /// Throws FactQueryError, and what the making of facts throws.
   FactAnswer run(Query& query);
-  /// Rows of a table are not what they were.
-  void forget(std::size_t table);
+  /// These columns of a table are not what they were.
+  void forget(std::size_t table, const std::set<std::size_t>& columns);
 
  private:
   struct Impl;

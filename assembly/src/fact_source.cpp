@@ -185,20 +185,11 @@ const std::vector<ContactPatch>& FactSource::shared_planes(const Touch& touch) {
   return known.patches;
 }
 
-const std::vector<UnloadAnalysis>& FactSource::unloadings() {
-  // The rest of the design does not matter.
-  if (unloadings_ && unloaded_.instances == state_.instances &&
-      unloaded_.tolerance_mm == state_.tolerance_mm &&
-      unloaded_.design.roles == state_.design.roles &&
-      unloaded_.design.limit("lift_mm") == state_.design.limit("lift_mm")) {
-    return *unloadings_;
-  }
-  unloadings_.emplace();
-  for (const FixtureModel& model : fixtures()) {
-    unloadings_->push_back(analyse_unloading(model, *this));
-  }
-  unloaded_ = state_;
-  return *unloadings_;
+const UnloadAnalysis& FactSource::unloading(const FixtureModel& model) {
+  Unloading unloading = unloading_of(model, *this);
+  KnownUnloading& known = unloadings_[model.workpiece];
+  if (!(known.of == unloading)) known = {unloading, analyse_unloading(unloading, bodies_)};
+  return known.analysis;
 }
 
 }  // namespace dowel

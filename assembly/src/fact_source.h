@@ -17,6 +17,7 @@
 #include "dowel/catalog/lint.h"
 #include "fact_table.h"
 #include "fixture_contacts.h"
+#include "fixture_result.h"
 #include "placed_bodies.h"
 
 namespace dowel {
@@ -54,10 +55,8 @@ class FactSource {
   const std::vector<LintFinding>& data_faults(const std::string& element);
   /// Planes that the two of a contact share.
   const std::vector<ContactPatch>& shared_planes(const Touch& touch);
-  /// Whether each workpiece comes out, in the order of `fixtures`.
-  const std::vector<UnloadAnalysis>& unloadings();
-
-  const PlacedBodies& bodies() const { return bodies_; }
+  /// Whether the workpiece comes out.
+  const UnloadAnalysis& unloading(const FixtureModel& model);
 
  private:
   /// Pairs that are no farther apart than a gap, and the state that they are of.
@@ -82,8 +81,11 @@ class FactSource {
     std::vector<ContactPatch> patches;
   };
   std::map<std::pair<std::string, std::string>, SharedPlanes> shared_planes_;
-  ProjectState unloaded_;  ///< that `unloadings_` are of
-  std::optional<std::vector<UnloadAnalysis>> unloadings_;
+  struct KnownUnloading {
+    Unloading of;
+    UnloadAnalysis analysis;
+  };
+  std::map<std::string, KnownUnloading> unloadings_;  ///< by workpiece
   std::map<std::string, std::vector<LintFinding>> data_faults_;
   Pairs touching_;
   Pairs near_;

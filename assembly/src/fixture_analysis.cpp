@@ -137,22 +137,29 @@ std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const Fixture
   return result;
 }
 
-UnloadAnalysis analyse_unloading(const FixtureModel& model, FactSource& source) {
+Unloading unloading_of(const FixtureModel& model, FactSource& source) {
   const ProjectState& state = source.state();
   const std::set<std::string> off = taken_off(state, source.session(), source.touches());
-  ProjectState opened = state;
-  std::erase_if(opened.instances, [&](const auto& entry) {
-    return off.contains(entry.first) || !comes_near(model, source, entry.second);
-  });
-  PlacedBodies bodies = source.bodies().empty_copy();
-  bodies.follow(opened);
+  Unloading unloading{
+      model.workpiece, {}, ways_out(model), state.design.limit("lift_mm"), state.tolerance_mm};
+  for (const auto& [name, instance] : state.instances) {
+    if (!off.contains(name) && comes_near(model, source, instance)) {
+      unloading.opened.instances.emplace(name, instance);
+    }
+  }
+  return unloading;
+}
+
+UnloadAnalysis analyse_unloading(const Unloading& unloading, const PlacedBodies& models) {
+  PlacedBodies bodies = models.empty_copy();
+  bodies.follow(unloading.opened);
   UnloadAnalysis result;
-  result.lift_mm = state.design.limit("lift_mm");
-  const Pose X_WI = state.find(model.workpiece)->X_WI;
-  for (const Eigen::Vector3d& way : ways_out(model)) {
+  result.lift_mm = unloading.lift_mm;
+  const Pose X_WI = unloading.opened.find(unloading.workpiece)->X_WI;
+  for (const Eigen::Vector3d& way : unloading.ways) {
     const Pose X_WI_out(X_WI.rotation(), X_WI.translation() + result.lift_mm * way);
     const auto path =
-        bodies.sweep({{model.workpiece, Pose()}}, {X_WI, X_WI_out}, state.tolerance_mm);
+        bodies.sweep({{unloading.workpiece, Pose()}}, {X_WI, X_WI_out}, unloading.tolerance_mm);
     if (path.free_share >= result.free_share) {
       result.free_share = path.free_share;
       result.direction = way;
@@ -213,7 +220,7 @@ FixtureAnalysis analyse_fixture(Session& session) {
   result.support_margin_mm = supports.empty()
                                  ? -std::numeric_limits<double>::infinity()
                                  : support_margin_mm(supports, model.center_of_mass.head<2>());
-  result.unloading = source.unloadings().front();
+  result.unloading = source.unloading(model);
   return result;
 }
 

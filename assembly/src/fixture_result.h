@@ -11,6 +11,7 @@
 namespace dowel {
 
 class FactSource;
+class PlacedBodies;
 
 /// Columns: a unit force at each locating point and each clamp contact.
 Eigen::MatrixXd all_wrenches(const FixtureModel& model);
@@ -27,6 +28,22 @@ std::vector<PointAnalysis> analyse_points(const FixtureModel& model, const Fixtu
 
 std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const FixtureDesign& design);
 
-UnloadAnalysis analyse_unloading(const FixtureModel& model, FactSource& source);
+/// What the question whether a workpiece comes out hangs on.
+struct Unloading {
+  std::string workpiece;
+  ProjectState opened;                ///< what it can reach when clamps are off; no more than parts
+  std::vector<Eigen::Vector3d> ways;  ///< to try
+  double lift_mm = 0.0;
+  double tolerance_mm = 0.0;
+
+  bool operator==(const Unloading& other) const {
+    return workpiece == other.workpiece && opened.instances == other.opened.instances &&
+           ways == other.ways && lift_mm == other.lift_mm && tolerance_mm == other.tolerance_mm;
+  }
+};
+
+Unloading unloading_of(const FixtureModel& model, FactSource& source);
+/// `models`: of the elements.
+UnloadAnalysis analyse_unloading(const Unloading& unloading, const PlacedBodies& models);
 
 }  // namespace dowel

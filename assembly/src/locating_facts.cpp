@@ -115,11 +115,11 @@ FactRows load_rows(FactSource& source) {
 
 FactRows unloading_rows(FactSource& source) {
   FactRows rows;
-  for (std::size_t i = 0; i < source.fixtures().size(); ++i) {
-    const UnloadAnalysis& unloading = source.unloadings()[i];
-    rows.push_back({source.fixtures()[i].workpiece, truth(unloading.is_free),
-                    unloading.direction.x(), unloading.direction.y(), unloading.direction.z(),
-                    unloading.lift_mm, unloading.free_share, text_or_null(unloading.blocked_by)});
+  for (const FixtureModel& model : source.fixtures()) {
+    const UnloadAnalysis& unloading = source.unloading(model);
+    rows.push_back({model.workpiece, truth(unloading.is_free), unloading.direction.x(),
+                    unloading.direction.y(), unloading.direction.z(), unloading.lift_mm,
+                    unloading.free_share, text_or_null(unloading.blocked_by)});
   }
   return rows;
 }

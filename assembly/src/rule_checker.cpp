@@ -102,9 +102,10 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
 struct RuleChecker::Impl {
   struct Facts {
     FactRows rows;
-    bool is_known = false;
     bool is_stale = true;
-    std::uint64_t version = 0;
+    std::uint64_t changes = 0;            ///< times that it was made and had changed
+    std::vector<std::uint64_t> versions;  ///< by column: the last of these that changed it
+    std::uint64_t count_version = 0;      ///< the last that changed the number of rows
   };
   struct Prepared {
     std::unique_ptr<FactDatabase::Query> query;
@@ -126,30 +127,52 @@ struct RuleChecker::Impl {
     if (known.is_stale) {
       FactRows now = fact_tables()[table].rows(source);
       known.is_stale = false;
-      DOWEL_EXPECTS(std::ranges::all_of(now, [&](const FactRow& row) {
-        return row.size() == fact_tables()[table].columns.size();
-      }));
-      if (!known.is_known || now != known.rows) {
-        known.rows = std::move(now);
-        known.is_known = true;
-        ++known.version;
-        database.forget(table);
-      }
+      take(table, std::move(now));
     }
     return known.rows;
   }
 
-  std::uint64_t version(std::size_t table) {
+  /// Keeps what indices of the database and rules know of columns that are as they were.
+  void take(std::size_t table, FactRows now) {
+    Facts& known = facts[table];
+    const std::size_t columns = fact_tables()[table].columns.size();
+    DOWEL_EXPECTS(
+        std::ranges::all_of(now, [&](const FactRow& row) { return row.size() == columns; }));
+    const bool is_first = known.versions.empty();
+    const bool is_resized = now.size() != known.rows.size();
+    std::set<std::size_t> changed;
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (is_first || is_resized ||
+          !std::ranges::equal(now, known.rows, [&](const auto& a, const auto& b) {
+            return a[column] == b[column];
+          })) {
+        changed.insert(column);
+      }
+    }
+    if (changed.empty()) return;
+    ++known.changes;
+    known.versions.resize(columns);
+    for (const std::size_t column : changed) known.versions[column] = known.changes;
+    if (is_first || is_resized) known.count_version = known.changes;
+    known.rows = std::move(now);
+    database.forget(table, changed);
+  }
+
+  /// Of the columns, and of how many rows there are.
+  std::uint64_t version(std::size_t table, const std::set<std::size_t>& columns) {
     rows(table);
-    return facts[table].version;
+    std::uint64_t last = facts[table].count_version;
+    for (const std::size_t column : columns) last = std::max(last, facts[table].versions[column]);
+    return last;
   }
 
   bool must_run(Prepared& rule) {
     if (!rule.has_run) return true;
     if (rule.query == nullptr) return false;  // broken for good
     try {
-      return std::ranges::any_of(
-          rule.versions, [&](const auto& seen) { return version(seen.first) != seen.second; });
+      return std::ranges::any_of(rule.query->reads(), [&](const auto& read) {
+        return version(read.first, read.second) != rule.versions.at(read.first);
+      });
     } catch (const Error&) {
       return true;  // running it tells
     }
@@ -176,9 +199,9 @@ void RuleChecker::Impl::run(const Rule& rule, Prepared& prepared_rule) {
   result.rule = rule;
   try {
     if (prepared_rule.query == nullptr) prepared_rule.query = database.prepare(rule.sql);
-    for (const std::size_t table : prepared_rule.query->reads()) {
+    for (const auto& [table, columns] : prepared_rule.query->reads()) {
       result.facts.emplace_back(fact_tables()[table].name);
-      prepared_rule.versions[table] = version(table);
+      prepared_rule.versions[table] = version(table, columns);
     }
     result.findings = findings_of(rule, database.run(*prepared_rule.query));
   } catch (const FactQueryError& error) {

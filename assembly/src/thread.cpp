@@ -29,12 +29,20 @@ DepthRange with_chamfers(const std::vector<HoleSegment>& segments, std::size_t i
   return stretch;
 }
 
-bool is_coaxial(const Feature& shaft, const Pose& X_HS, const Feature& hole, double depth_mm) {
-  const Eigen::Vector3d direction_H = X_HS.rotation() * shaft.direction;
-  if (hole.direction.cross(direction_H).norm() > kCoaxial_rad) return false;
-  const Eigen::Vector3d on_bore = hole.origin + depth_mm * hole.direction;
-  const Eigen::Vector3d to_bore = on_bore - X_HS * shaft.origin;
-  return (to_bore - to_bore.dot(direction_H) * direction_H).norm() <= kCoaxial_mm;
+/// A shaft's axis, seen from the part with the hole.
+struct ShaftAxis {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+
+  double distance_mm(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d offset = point - origin;
+    return (offset - offset.dot(direction) * direction).norm();
+  }
+};
+
+bool is_coaxial(const ShaftAxis& shaft, const Feature& hole, double depth_mm) {
+  return hole.direction.cross(shaft.direction).norm() <= kCoaxial_rad &&
+         shaft.distance_mm(hole.origin + depth_mm * hole.direction) <= kCoaxial_mm;
 }
 
 }  // namespace
@@ -100,12 +108,17 @@ std::vector<ThreadRelief> thread_reliefs(const Element& tapped, const Pose& X_WT
   const Pose X_TS = X_WT.inverse() * X_WS;
   for (const Feature& shaft : screw.features) {
     if (shaft.kind != FeatureKind::Shaft) continue;
+    const ShaftAxis axis{X_TS * shaft.origin, X_TS.rotation() * shaft.direction};
     for (const Feature& hole : tapped.features) {
-      if (hole.kind != FeatureKind::Hole) continue;
+      // Most holes of a plate are out of the question by their opening.
+      if (hole.kind != FeatureKind::Hole ||
+          axis.distance_mm(hole.origin) > kCoaxial_mm + kCoaxial_rad * hole.depth_mm) {
+        continue;
+      }
       for (std::size_t i = 0; i < hole.segments.size(); ++i) {
         const HoleSegment& segment = hole.segments[i];
         if (!is_core_hole(shaft.diameter_mm, segment)) continue;
-        if (!is_coaxial(shaft, X_TS, hole, 0.5 * (segment.from_mm + segment.to_mm))) continue;
+        if (!is_coaxial(axis, hole, 0.5 * (segment.from_mm + segment.to_mm))) continue;
         const DepthRange stretch = with_chamfers(hole.segments, i);
         reliefs.push_back({.start = hole.origin + stretch.from_mm * hole.direction,
                            .direction = hole.direction,
