@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "analysis_drawing.h"
 #include "console_commands.h"
@@ -11,6 +12,11 @@
 
 namespace dowel::tools {
 namespace {
+
+/// Whole degrees: orientations are quarter, third and half turns.
+double whole_degrees(double angle_rad) {
+  return std::round(angle_rad * 180.0 / std::numbers::pi);
+}
 
 /// To four digits: no force or error is known better.
 std::string rough(double value) {
@@ -71,6 +77,24 @@ std::string contact_table(const FixtureAnalysis& analysis, const FixtureDesign& 
   return table.text();
 }
 
+std::string foolproof_text(const FoolproofAnalysis& analysis) {
+  if (analysis.wrong.empty() && analysis.same == 0) return "foolproof: not told below rank 6";
+  std::string text =
+      "foolproof: none of " + counted(analysis.wrong.size(), "wrong orientation") + " seats";
+  if (!analysis.is_foolproof()) {
+    text = "foolproof: no, it seats when it is turned";
+    for (const WrongOrientation& wrong : analysis.wrong) {
+      if (!wrong.seats) continue;
+      text += "\n  " + short_number(whole_degrees(wrong.angle_rad)) + " degrees about " +
+              point_text(wrong.axis_W);
+    }
+  }
+  if (analysis.same > 0) {
+    text += "\n  it looks the same in " + counted(analysis.same, "other orientation");
+  }
+  return text;
+}
+
 std::string analysis_text(const FixtureAnalysis& analysis, const FixtureDesign& design) {
   const FixtureModel& model = analysis.model;
   std::string text = "workpiece " + model.workpiece + ": " +
@@ -109,6 +133,7 @@ std::string analysis_text(const FixtureAnalysis& analysis, const FixtureDesign& 
     text += "blocked" + (out.blocked_by.empty() ? std::string() : " by " + out.blocked_by) +
             " after " + rough(out.free_share * out.lift_mm) + " of " + rough(out.lift_mm) + " mm";
   }
+  text += "\n" + foolproof_text(analysis.foolproof);
   return text;
 }
 
@@ -122,6 +147,17 @@ Json contacts_json(const FixtureAnalysis& analysis) {
                         {"area_mm2", contact.area_mm2}});
   }
   return contacts;
+}
+
+Json foolproof_json(const FoolproofAnalysis& analysis) {
+  Json wrong = Json::array();
+  for (const WrongOrientation& one : analysis.wrong) {
+    wrong.push_back({{"axis", to_json(one.axis_W)},
+                     {"angle_deg", whole_degrees(one.angle_rad)},
+                     {"seats", one.seats},
+                     {"against", one.against}});
+  }
+  return {{"same", analysis.same}, {"wrong", std::move(wrong)}};
 }
 
 Json analysis_json(const FixtureAnalysis& analysis) {
@@ -167,6 +203,7 @@ Json analysis_json(const FixtureAnalysis& analysis) {
                        {"lift_mm", analysis.unloading.lift_mm},
                        {"free_share", analysis.unloading.free_share},
                        {"blocked_by", analysis.unloading.blocked_by}};
+  json["foolproof"] = foolproof_json(analysis.foolproof);
   return json;
 }
 

@@ -192,4 +192,15 @@ const UnloadAnalysis& FactSource::unloading(const FixtureModel& model) {
   return known.analysis;
 }
 
+const FoolproofAnalysis& FactSource::foolproof(const FixtureModel& model) {
+  FoolproofQuestion question = foolproof_question(model, *this);
+  KnownFoolproof& known = foolproofs_[model.workpiece];
+  if (!(known.answer.question == question)) {
+    const Element& workpiece = element(*state_.find(model.workpiece));
+    known.answer = analyse_foolproof(std::move(question), known.answer, workpiece, bodies_);
+    known.analysis = known.answer.analysis();
+  }
+  return known.analysis;
+}
+
 }  // namespace dowel

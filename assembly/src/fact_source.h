@@ -18,6 +18,7 @@
 #include "fact_table.h"
 #include "fixture_contacts.h"
 #include "fixture_result.h"
+#include "foolproof.h"
 #include "placed_bodies.h"
 
 namespace dowel {
@@ -57,6 +58,8 @@ class FactSource {
   const std::vector<ContactPatch>& shared_planes(const Touch& touch);
   /// Whether the workpiece comes out.
   const UnloadAnalysis& unloading(const FixtureModel& model);
+  /// Whether the workpiece seats in a wrong orientation.
+  const FoolproofAnalysis& foolproof(const FixtureModel& model);
 
  private:
   /// Pairs that are no farther apart than a gap, and the state that they are of.
@@ -86,6 +89,11 @@ class FactSource {
     UnloadAnalysis analysis;
   };
   std::map<std::string, KnownUnloading> unloadings_;  ///< by workpiece
+  struct KnownFoolproof {
+    FoolproofAnswer answer;
+    FoolproofAnalysis analysis;
+  };
+  std::map<std::string, KnownFoolproof> foolproofs_;  ///< by workpiece
   std::map<std::string, std::vector<LintFinding>> data_faults_;
   Pairs touching_;
   Pairs near_;

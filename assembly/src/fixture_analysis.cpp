@@ -61,14 +61,6 @@ std::set<std::string> taken_off(const ProjectState& state, Session& session,
   return off;
 }
 
-/// False for what the workpiece cannot reach on its way out, by the balls around the two boxes.
-bool comes_near(const FixtureModel& model, FactSource& source, const Instance& instance) {
-  const Obb& box = source.element(instance).obb;
-  const double reach_mm = model.frame.length_mm + box.half_extents_mm.norm() +
-                          source.state().design.limit("lift_mm") + source.state().tolerance_mm;
-  return (instance.X_WI * box.center - model.frame.reference).norm() <= reach_mm;
-}
-
 }  // namespace
 
 Eigen::MatrixXd all_wrenches(const FixtureModel& model) {
@@ -137,17 +129,27 @@ std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const Fixture
   return result;
 }
 
-Unloading unloading_of(const FixtureModel& model, FactSource& source) {
+ProjectState opened_around(const FixtureModel& model, FactSource& source, double reach_mm) {
   const ProjectState& state = source.state();
   const std::set<std::string> off = taken_off(state, source.session(), source.touches());
-  Unloading unloading{
-      model.workpiece, {}, ways_out(model), state.design.limit("lift_mm"), state.tolerance_mm};
+  ProjectState opened;
   for (const auto& [name, instance] : state.instances) {
-    if (!off.contains(name) && comes_near(model, source, instance)) {
-      unloading.opened.instances.emplace(name, instance);
+    // By the ball around its box.
+    const Obb& box = source.element(instance).obb;
+    const double away_mm = (instance.X_WI * box.center - model.frame.reference).norm();
+    if (!off.contains(name) && away_mm - box.half_extents_mm.norm() <= reach_mm) {
+      opened.instances.emplace(name, instance);
     }
   }
-  return unloading;
+  return opened;
+}
+
+Unloading unloading_of(const FixtureModel& model, FactSource& source) {
+  const double lift_mm = source.state().design.limit("lift_mm");
+  const double tolerance_mm = source.state().tolerance_mm;
+  return {model.workpiece,
+          opened_around(model, source, model.frame.length_mm + lift_mm + tolerance_mm),
+          ways_out(model), lift_mm, tolerance_mm};
 }
 
 UnloadAnalysis analyse_unloading(const Unloading& unloading, const PlacedBodies& models) {
@@ -221,6 +223,7 @@ FixtureAnalysis analyse_fixture(Session& session) {
                                  ? -std::numeric_limits<double>::infinity()
                                  : support_margin_mm(supports, model.center_of_mass.head<2>());
   result.unloading = source.unloading(model);
+  result.foolproof = source.foolproof(model);
   return result;
 }
 

@@ -28,6 +28,10 @@ std::vector<PointAnalysis> analyse_points(const FixtureModel& model, const Fixtu
 
 std::vector<LoadAnalysis> analyse_loads(const FixtureModel& model, const FixtureDesign& design);
 
+/// The workpiece, and what comes nearer than `reach_mm` to the middle of its box when clamps are
+/// off.
+ProjectState opened_around(const FixtureModel& model, FactSource& source, double reach_mm);
+
 /// What the question whether a workpiece comes out hangs on.
 struct Unloading {
   std::string workpiece;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fact_source.h"
 #include "fixture_result.h"
@@ -124,6 +125,19 @@ FactRows unloading_rows(FactSource& source) {
   return rows;
 }
 
+FactRows orientation_rows(FactSource& source) {
+  constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
+  FactRows rows;
+  for (const FixtureModel& model : source.fixtures()) {
+    for (const WrongOrientation& wrong : source.foolproof(model).wrong) {
+      rows.push_back({model.workpiece, std::round(wrong.angle_rad * kDegrees_per_rad),
+                      wrong.axis_W.x(), wrong.axis_W.y(), wrong.axis_W.z(), truth(wrong.seats),
+                      text_or_null(wrong.against)});
+    }
+  }
+  return rows;
+}
+
 constexpr unsigned kFromAll = kFromParts | kFromDesign | kFromTolerance;
 
 }  // namespace
@@ -179,6 +193,19 @@ std::vector<FactTable> locating_facts() {
          "forces"}},
        kFromAll,
        locator_rows},
+      {"orientations",
+       "Quarter, third and half turns of a workpiece with rank 6 about the axes of its box in "
+       "which "
+       "it looks different, each pushed towards the locators, clamps off.",
+       {{"workpiece", "instance"},
+        {"angle_deg", "of the turn"},
+        {"dx", "its axis; unit"},
+        {"dy", ""},
+        {"dz", ""},
+        {"seats", "1: on all locators, clear of everything"},
+        {"against", "what it is in, or the locator that it does not reach; NULL where it seats"}},
+       kFromAll,
+       orientation_rows},
       {"points",
        "Critical points as given by `point`, and what the errors of the locators make of them.",
        {{"point", "name"},

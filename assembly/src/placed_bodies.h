@@ -58,6 +58,9 @@ class PlacedBodies {
   /// of the other checks may hang on that.
   PairVerdict pair(const std::string& a, const std::string& b, double tolerance_mm);
 
+  /// An element's model, shared by all its bodies.
+  std::shared_ptr<const CollisionElement> shape(const std::string& element);
+
   /// Forgets an element that no body uses, so that it is loaded anew.
   void forget(const std::string& element);
 
@@ -70,7 +73,6 @@ class PlacedBodies {
     Pose X_WI;
   };
 
-  std::shared_ptr<const CollisionElement> shape(const std::string& element);
   /// Declares the threads between `name`, at any of `poses`, and all others.
   void relieve(const std::string& name, const std::vector<Pose>& poses);
   /// Whether a body of one kind may be tapped for one of the other.

@@ -268,8 +268,11 @@ TEST_CASE("after an edit only rules whose facts changed run again", "[rule]") {
   checker.check();
   CHECK(checker.last_run() == 1);
   session->set_mode(dowel::CheckMode::Off, "off");
-  // A part of the workpiece's moves: `instances` is another, `bom` is made anew and the same.
+  // `instances` is another, but not in the column that is read; `bom` is made anew and the same.
   session->move("WORK", {0, 0, 61}, "move");
+  checker.check();
+  CHECK(checker.last_run() == 0);
+  session->move("WORK", {1, 0, 61}, "move");
   checker.check();
   CHECK(checker.last_run() == 1);
 }

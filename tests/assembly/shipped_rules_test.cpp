@@ -149,6 +149,18 @@ void block_examples(Seen& seen) {
                b.fix("PUSH");
              }});
   try_block({"nothing holds the clamp", {"FST-01"}, [](FixtureBuilder& b) { unfix(b, "CLAMP"); }});
+  try_block({"a hole off the middle that no locator minds", {"ACC-03"}, [](FixtureBuilder& b) {
+               dowel::testing::DrilledHole hole;
+               hole.radius_mm = 5.0;
+               hole.x = 30.0;
+               hole.y = 20.0;
+               ProjectElement work = testing::element_of(
+                   "W/drilled", testing::plate_with_holes({120, 80, 30}, {hole}, 24),
+                   {testing::hole_feature("h1", {30, 20, 30}, kDown, {{10.0, 30.0}}, true)});
+               work.element.role = "workpiece";
+               b.add_element(work);
+               b.state.instances.at("WORK").element = "W/drilled";
+             }});
   try_block({"a roof over it", {"ACC-02"}, [](FixtureBuilder& b) {
                b.add_box("T/roof-140x100x5", {140, 100, 5}, "");
                b.add_box("T/wall-5x100x50", {5, 100, 50}, "");

@@ -82,6 +82,23 @@ struct UnloadAnalysis {
   double free_share = 0.0;  ///< of the way along it
 };
 
+/// The workpiece put in turned, as nobody should.
+struct WrongOrientation {
+  Eigen::Vector3d axis_W = Eigen::Vector3d::UnitZ();  ///< unit; through the middle of its box
+  double angle_rad = 0.0;
+  bool seats = false;   ///< on all locators, clear of everything
+  Pose X_WI;            ///< where it ends
+  std::string against;  ///< what it is in, or which locator it does not reach; empty where it seats
+};
+
+/// Quarter, third and half turns of the workpiece about the axes of its box, 23 in all: pushed
+/// towards the locators, none should seat. Nothing is tried below rank 6.
+struct FoolproofAnalysis {
+  std::vector<WrongOrientation> wrong;
+  std::size_t same = 0;  ///< orientations in which it looks as it does
+  bool is_foolproof() const;
+};
+
 struct FixtureAnalysis {
   FixtureModel model;
   Locating locating;
@@ -92,6 +109,7 @@ struct FixtureAnalysis {
   double support_area_mm2 = 0.0;
   double support_margin_mm = 0.0;  ///< of the centre of mass; negative outside
   UnloadAnalysis unloading;
+  FoolproofAnalysis foolproof;
 };
 
 /// The workpiece of the project and its contacts. Throws Error{InvalidInput} where there is not

@@ -17,12 +17,16 @@ struct LocatingPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, into the workpiece
   double error_mm = 0.0;   ///< it may stand off along its normal by this, plus or minus
   bool two_sided = false;  ///< it pushes either way: a pin in a hole
+
+  bool operator==(const LocatingPoint&) const = default;
 };
 
 /// What the workpiece is measured from and by: the centre and half the diagonal of its box.
 struct LocatingFrame {
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();
   double length_mm = 1.0;
+
+  bool operator==(const LocatingFrame&) const = default;
 };
 
 /// A column for each point: [n; (r - o) x n / L]. The wrench (force, torque over L about o) that a
