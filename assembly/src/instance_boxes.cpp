@@ -40,8 +40,8 @@ std::vector<std::pair<const Instance*, const Instance*>> near_pairs(
       }
     }
   }
-  std::ranges::sort(
-      pairs, {}, [](const auto& pair) { return std::tie(pair.first->name, pair.second->name); });
+  std::ranges::sort(pairs, {},
+                    [](const auto& pair) { return std::tie(pair.first->name, pair.second->name); });
   return pairs;
 }
 

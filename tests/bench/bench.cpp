@@ -13,6 +13,7 @@
 #include "object_index.h"
 #include "paper_tables.h"
 #include "report.h"
+#include "rule_checks.h"
 #include "skips.h"
 #include "stability.h"
 
@@ -20,8 +21,8 @@ namespace dowel::bench {
 
 namespace {
 
-constexpr std::array kStudies{"moves",   "growth", "judged",   "error",
-                              "objects", "skips",  "stability"};
+constexpr std::array kStudies{"moves",   "growth", "judged",    "error",
+                              "objects", "skips",  "stability", "rules"};
 
 struct Arguments {
   Plan plan;
@@ -115,6 +116,7 @@ Results run_studies(const Arguments& given) {
   take("objects", run_object_study);
   take("skips", run_skip_study);
   take("stability", run_stability);
+  take("rules", run_rule_study);
   if (!results.runs.empty()) results.charts["time-per-move"] = time_chart(results);
   if (!results.scale.empty()) results.charts["growth"] = growth_chart(results);
   if (!results.sizes.empty()) results.charts["moving-size"] = size_chart(results);
