@@ -123,11 +123,9 @@ bool Judge::may_hold(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
 bool Judge::take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
   const AxisProfile& shaft = (shaft_is_in_a ? pair_.a : pair_.b).profiles().shafts[s];
   const AxisProfile& bore = (shaft_is_in_a ? pair_.b : pair_.a).profiles().bores[v];
-  // Reliefs are given in B; a shaft of B in a bore of A sees them in A only where there are none.
-  if (!shaft_is_in_a && !pair_.reliefs_B.empty()) return false;
   const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
   const Fit fitted = fit(shaft, bore, X_VS, options_.tolerance_mm * (1.0 - kSafety),
-                         shaft_is_in_a ? pair_.reliefs_B : std::span<const ThreadRelief>());
+                         shaft_is_in_a ? pair_.reliefs_B : reliefs_A());
   if (!fitted.is_free) return false;
   result_.method = Method::Exact;
   const Eigen::Vector3d place_B =
@@ -140,6 +138,15 @@ bool Judge::take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
     is_decided_ = true;
   }
   return true;
+}
+
+std::span<const ThreadRelief> Judge::reliefs_A() {
+  scratch_.reliefs_A.clear();
+  for (const ThreadRelief& relief : pair_.reliefs_B) {
+    scratch_.reliefs_A.push_back({X_AB_ * relief.start, X_AB_.rotation() * relief.direction,
+                                  relief.length_mm, relief.radius_mm});
+  }
+  return scratch_.reliefs_A;
 }
 
 bool Judge::takes_part(const ModelTriangle& t) const {

@@ -82,6 +82,9 @@ class Judge {
 
   bool take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v);
 
+  /// The reliefs as A sees them. Valid until the next call.
+  std::span<const ThreadRelief> reliefs_A();
+
   // Contact.
 
   void touch(double gap_mm, const Eigen::Vector3d& place_B);

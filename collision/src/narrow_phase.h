@@ -30,7 +30,8 @@ struct NarrowScratch {
     const BvhNode* b;
   };
   std::vector<NodePair> stack;
-  std::vector<LeafPair> leaves;  ///< that are near each other
+  std::vector<LeafPair> leaves;         ///< that are near each other
+  std::vector<ThreadRelief> reliefs_A;  ///< of a pair, in the frame of A
 };
 
 /// Two models, one placed relative to the other.

@@ -219,9 +219,10 @@ class CollisionScene::Impl::PairSweep {
     const double travel_mm = bore.direction.dot(way);
     const bool is_along = (way - travel_mm * bore.direction).norm() <= kAlongAxis_mm;
     if (!is_along || (motion_.is_turn() && !turns_about(shaft, time))) return false;
-    std::span<const ThreadRelief> reliefs;
-    if (memory_.shaft_is_in_a) reliefs = scene_.reliefs_in(moving_, with_, X_BA);
-    return fit(shaft, bore, X_VS, options_.tolerance_mm, reliefs, travel_mm).is_free;
+    const std::span<const ThreadRelief> reliefs_V =
+        memory_.shaft_is_in_a ? scene_.reliefs_in(moving_, with_, X_BA)
+                              : scene_.reliefs_in(with_, moving_, X_BA.inverse());
+    return fit(shaft, bore, X_VS, options_.tolerance_mm, reliefs_V, travel_mm).is_free;
   }
 
   /// Whether the motion turns about the axis of a shaft, which then stays on its line. The turn is

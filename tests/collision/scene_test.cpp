@@ -116,6 +116,11 @@ TEST_CASE("a screw may overlap the thread it is declared for and nothing else") 
   CHECK(worst(scene.check_all({})) == Verdict::Contact);
   scene.set_reliefs(plate, screw, {{{0, 0, 0}, Eigen::Vector3d::UnitZ(), 20, 6.0}});
   CHECK(worst(scene.check_all({})) == Verdict::Contact);
+  // Whichever moves.
+  const Pose X_WS = Pose::from_translation({0, 0, -5});
+  CHECK(worst(scene.check(std::span(&screw, 1), std::span(&X_WS, 1), {})) == Verdict::Contact);
+  const Pose X_WP;
+  CHECK(worst(scene.check(std::span(&plate, 1), std::span(&X_WP, 1), {})) == Verdict::Contact);
   // Tilted or off its axis it is no longer in its thread.
   scene.move(screw, Pose::from_translation({0.5, 0, -5}));
   CHECK(worst(scene.check_all({})) == Verdict::Interference);
