@@ -166,8 +166,11 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   if (mover.listed_until < 0.0) {
     mover.element = body(id).element.get();
     mover.radius_mm = mover.element->obb().half_extents_mm.norm();
+    mover.obb_W = transformed(X_WB, mover.element->obb());
   }
   const Eigen::Vector3d center_W = X_WB * mover.element->obb().center;
+  // Most moves do not turn.
+  const bool is_turned = X_WB.rotation().coeffs() != mover.X_WB.rotation().coeffs();
   double step_mm = 0.0;
   if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes) {
     mover.tolerance_mm = options.tolerance_mm;
@@ -177,21 +180,22 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   } else if (mover.listed_until >= 0.0) {
     // No point is further from the box's centre than a corner; turned by an angle it moves by twice
     // the sine of half of that.
-    step_mm = (center_W - mover.center_W).norm() + kWayRounding_mm;
-    if (X_WB.rotation().coeffs() != mover.X_WB.rotation().coeffs()) {
+    step_mm = (center_W - mover.obb_W.center).norm() + kWayRounding_mm;
+    if (is_turned) {
       const Eigen::Quaterniond turn = mover.X_WB.rotation().conjugate() * X_WB.rotation();
       step_mm += 2.0 * turn.vec().norm() * mover.radius_mm;
     }
     mover.way_mm += step_mm;
   }
   mover.X_WB = X_WB;
-  mover.center_W = center_W;
+  mover.obb_W.center = center_W;
+  if (is_turned) mover.obb_W.axes = X_WB.rotation_matrix() * mover.element->obb().axes;
   if (mover.way_mm >= mover.listed_until) find_candidates(mover, step_mm);
   return mover;
 }
 
 void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
-  const Obb obb_W = mover.obb_W();
+  const Obb& obb_W = mover.obb_W;
   const double room_mm = std::min(kStepsOfRoom * step_mm, kSizesOfRoom * mover.radius_mm);
   const double margin_mm = mover.tolerance_mm + room_mm;
   const Silhouette outline = silhouette(obb_W);
@@ -216,8 +220,7 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   mover.clear_until = 0.0;
 }
 
-PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, const Obb& obb_W,
-                                                  Candidate& candidate,
+PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, Candidate& candidate,
                                                   const QueryOptions& options) {
   ++counters.box_tests;
   const auto in_world = [&](PairVerdict verdict) {
@@ -233,7 +236,7 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, const Obb&
     }
   }
   const BoxSeparation boxes =
-      separate(obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
+      separate(mover.obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
   candidate.plane = static_cast<std::int8_t>(boxes.plane);
   if (boxes.plane >= 0) {
     PairVerdict clear;
@@ -247,7 +250,6 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, const Obb&
 
 bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
   if (mover.way_mm < mover.clear_until) return true;
-  const Obb obb_W = mover.obb_W();
   double clear_until = mover.listed_until;
   for (Candidate& candidate : mover.candidates) {
     const Body& other = bodies[candidate.id.value];
@@ -259,7 +261,7 @@ bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }
-    const PairVerdict verdict = judge_candidate(mover, obb_W, candidate, options);
+    const PairVerdict verdict = judge_candidate(mover, candidate, options);
     if (verdict.verdict == Verdict::Clear) {
       candidate.clear_until = mover.way_mm + verdict.gap_mm - options.tolerance_mm;
       clear_until = std::min(clear_until, candidate.clear_until);

@@ -56,7 +56,7 @@ struct CollisionScene::Impl {
     const CollisionElement* element = nullptr;
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
-    Eigen::Vector3d center_W;  // of its box
+    Obb obb_W;
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
@@ -64,8 +64,6 @@ struct CollisionScene::Impl {
     HoleMode holes = HoleMode::Exact;
     std::uint64_t last_use = 0;
     std::vector<Candidate> candidates;  // by id
-
-    Obb obb_W() const { return transformed(X_WB, element->obb()); }
   };
 
   class PairSweep;
@@ -115,8 +113,8 @@ struct CollisionScene::Impl {
   /// Finds the mover's candidates anew, with room for the moves to come.
   void find_candidates(Mover& mover, double step_mm);
 
-  /// Verdict on a mover whose box is `obb_W` and one of its candidates; witness in the world.
-  PairVerdict judge_candidate(const Mover& mover, const Obb& obb_W, Candidate& candidate,
+  /// Verdict on a mover and one of its candidates; witness in the world.
+  PairVerdict judge_candidate(const Mover& mover, Candidate& candidate,
                               const QueryOptions& options);
 
   /// Appends the verdicts of one mover to `verdicts`; false once `first_only` ends the query.
