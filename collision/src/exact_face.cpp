@@ -15,11 +15,14 @@ constexpr double kTangent = 1e-6;
 /// A point is on the near sheet of a closed surface where the facet lies within this many slacks.
 constexpr double kSheetSlacks = 4.0;
 
-/// Barycentric slack of "inside the triangle", relative: rounding only.
+/// A facet whose normal is this far from its face's (cosine) is of another sheet.
+constexpr double kLeastSlope = 0.2;
+
+/// Slack of "inside the triangle", mm: rounding only.
 constexpr double kInsideSlack = 1e-9;
 
-/// A place this close to a chord, rounding, is on it, and so between it and its arc.
-constexpr double kOnChord_mm = 1e-9;
+/// A place this close to an axis is on it: rounding.
+constexpr double kOnAxis_mm = 1e-9;
 
 /// The search along an arc ends when the way to the asked point is this nearly at a right angle to
 /// it (radians; the distance is then right to half its square), or after so many steps.
@@ -101,33 +104,56 @@ bool on_face_side(const Face& beyond, EdgeShape shape, const Eigen::Vector3d& c)
   return shape == EdgeShape::Convex ? distance <= 0.0 : distance >= 0.0;
 }
 
+Eigen::Vector3d edge_of(const ModelTriangle& t, std::size_t i) {
+  return t.corners[(i + 1) % 3] - t.corners[i];
+}
+
 /// In-plane distance of `c` from edge `i` times the edge's length, positive outside the triangle.
 double beyond_edge_by_length(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
-  return edge.cross(t.normal).dot(c - t.corners[i]);
+  return edge_of(t, i).cross(t.normal).dot(c - t.corners[i]);
 }
 
 /// In-plane distance of `c` from edge `i`, positive outside the triangle.
 double beyond_edge(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
-  return beyond_edge_by_length(t, i, c) / (t.corners[(i + 1) % 3] - t.corners[i]).norm();
+  return beyond_edge_by_length(t, i, c) / edge_of(t, i).norm();
 }
 
 /// Whether `c` is seen from edge `i` at a right angle: the rim's arc over a chord lies there and
 /// nowhere else.
 bool is_over_chord(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d chord = t.corners[(i + 1) % 3] - t.corners[i];
+  const Eigen::Vector3d chord = edge_of(t, i);
   const double along = chord.dot(c - t.corners[i]);
   return along >= 0.0 && along <= chord.squaredNorm();
 }
 
-/// Whether the foot `c` beside a facet lies between one of its chords and the arc over it, where
-/// facets fall short of the rim of a disc, or of the wide end of a cone.
-bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
-                     const Eigen::Vector3d& c) {
+/// The place of a facet's plane over which the foot `c` on its face lies, seen along the face's
+/// normal; nothing where the facet is of another sheet.
+std::optional<Eigen::Vector3d> place_under(const ModelTriangle& t, const Face& face,
+                                           const Eigen::Vector3d& c) {
+  const Eigen::Vector3d normal = outward_normal(face, c);
+  const double slope = normal.dot(t.normal);
+  if (!(slope > kLeastSlope)) return std::nullopt;
+  const double height = (t.corners[0] - c).dot(t.normal) / slope;
+  if (std::abs(height) > kSheetSlacks * t.slack_mm + kInsideSlack) return std::nullopt;
+  return c + height * normal;
+}
+
+bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& x, double slack_mm) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double length = slack_mm > 0.0 ? edge_of(t, i).norm() : 0.0;
+    if (beyond_edge_by_length(t, i, x) > slack_mm * length) return false;
+  }
+  return true;
+}
+
+/// Whether the foot `c` of a face lies between one of a facet's chords and the arc over it, where
+/// facets fall short of the rim of a disc, or of the wide end of a cone. `x`: the place of the
+/// facet's plane under it, not inside by `is_inside`: no foot is between the two.
+bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t, const Eigen::Vector3d& c,
+                     const Eigen::Vector3d& x) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!is_chord(model, t, i)) continue;
-    // Not inside by the same sign as in `is_inside`: no place is between the two.
-    if (beyond_edge_by_length(t, i, c) <= 0.0 || beyond_edge(t, i, c) > t.slack_mm) continue;
+    if (beyond_edge_by_length(t, i, x) <= 0.0 || beyond_edge(t, i, c) > t.slack_mm) continue;
     if (is_over_chord(t, i, c) && on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
       return true;
     }
@@ -136,38 +162,12 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t,
 }
 
 /// Whether the place `c` of a facet lies between a chord and the arc over it, where facets overhang
-/// the rims of holes.
+/// the rims of holes and of narrow ends of cones. The foot on a curved face may also lie beyond the
+/// chord, as the facet is seen along the face's normal.
 bool overhangs_rim(const CollisionModel& model, const Chord& chord, const Eigen::Vector3d& c) {
   const ModelTriangle& t = model.triangles()[chord.triangle];
-  const double beyond = beyond_edge(t, chord.edge, c);
-  return beyond <= kOnChord_mm && beyond >= -t.slack_mm && is_over_chord(t, chord.edge, c) &&
+  return std::abs(beyond_edge(t, chord.edge, c)) <= t.slack_mm && is_over_chord(t, chord.edge, c) &&
          !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
-}
-
-bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& c) {
-  return beyond_edge_by_length(t, 0, c) <= 0.0 && beyond_edge_by_length(t, 1, c) <= 0.0 &&
-         beyond_edge_by_length(t, 2, c) <= 0.0;
-}
-
-/// Whether the foot `c` on a curved surface is on the facet's side of it and about its height.
-bool is_beside(const ModelTriangle& t, const Face& face, const Eigen::Vector3d& c) {
-  return outward_normal(face, c).dot(t.normal) > 0.2 &&
-         std::abs(t.normal.dot(c - t.corners[0])) <= kSheetSlacks * t.slack_mm + kInsideSlack;
-}
-
-/// Whether the foot `c` on a curved surface lies over the facet, seen along the surface's normal.
-bool foot_is_over(const ModelTriangle& t, const Face& face, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d normal = outward_normal(face, c);
-  const double slope = normal.dot(t.normal);
-  if (!(slope > 0.2)) return false;
-  const double height = (t.corners[0] - c).dot(t.normal) / slope;
-  if (std::abs(height) > kSheetSlacks * t.slack_mm + kInsideSlack) return false;
-  const Eigen::Vector3d x = c + height * normal;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
-    if (edge.cross(t.normal).dot(x - t.corners[i]) > kInsideSlack * edge.norm()) return false;
-  }
-  return true;
 }
 
 FacePoint at(const Eigen::Vector3d& point, const Eigen::Vector3d& p, FacePoint::Place place) {
@@ -193,7 +193,7 @@ std::optional<FacePoint> nearest_on_circle(const Face& face, const Face& beyond,
   outward -= direction * direction.dot(outward);
   const double from_axis = outward.norm();
   // Every place is as near to a point of the axis.
-  if (from_axis <= kOnChord_mm) outward = to_middle;
+  if (from_axis <= kOnAxis_mm) outward = to_middle;
   Eigen::Vector3d x = center + outward * (radius / outward.norm());
   if (to_middle.dot(x - start) <= 0.0) {
     const bool start_is_near = (p - start).squaredNorm() < (p - end).squaredNorm();
@@ -281,14 +281,16 @@ FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle
   }
   if (is_plane(face.surface)) {
     const Eigen::Vector3d c = p - t.normal * t.normal.dot(p - t.corners[0]);
-    if (is_inside(t, c) || is_short_of_rim(model, t, c)) return at(c, p, FacePoint::Place::Face);
+    if (is_inside(t, c, 0.0) || is_short_of_rim(model, t, c, c))
+      return at(c, p, FacePoint::Place::Face);
     const TrianglePoint q = closest_on_triangle(t.corners, p);
     // On the border the two notions of inside may differ by rounding.
     if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
     return nearest_on_rim_of_patch(model, t, q, p);
   }
   const Eigen::Vector3d c = closest_point(face.surface, p);
-  if (foot_is_over(t, face, c) || (is_beside(t, face, c) && is_short_of_rim(model, t, c))) {
+  const auto x = place_under(t, face, c);
+  if (x && (is_inside(t, *x, kInsideSlack) || is_short_of_rim(model, t, c, *x))) {
     return at(c, p, FacePoint::Place::Face);
   }
   const TrianglePoint q = closest_on_triangle(t.corners, p);
