@@ -146,14 +146,23 @@ class Finder {
   }
 
  private:
+  /// Axes of cylinders, and of cones that share none with a cylinder.
   std::vector<CylinderSurface> axes(bool is_bore) const {
     std::vector<CylinderSurface> result;
-    for (std::uint32_t f = 0; f < model_.face_count(); ++f) {
-      const auto* cylinder = std::get_if<CylinderSurface>(&model_.face(f).surface);
-      if (cylinder == nullptr || model_.face(f).reversed != is_bore) continue;
+    const auto add = [&](const CylinderSurface& axis) {
       const bool is_known = std::ranges::any_of(
-          result, [&](const CylinderSurface& axis) { return same_axis(axis, *cylinder); });
-      if (!is_known) result.push_back(*cylinder);
+          result, [&](const CylinderSurface& known) { return same_axis(known, axis); });
+      if (!is_known) result.push_back(axis);
+    };
+    for (const bool wants_cones : {false, true}) {
+      for (std::uint32_t f = 0; f < model_.face_count(); ++f) {
+        const Face& face = model_.face(f);
+        if (face.reversed != is_bore) continue;
+        const auto* cylinder = std::get_if<CylinderSurface>(&face.surface);
+        const auto* cone = std::get_if<ConeSurface>(&face.surface);
+        if (cylinder != nullptr && !wants_cones) add(*cylinder);
+        if (cone != nullptr && wants_cones) add({cone->apex, cone->axis, 0.0});
+      }
     }
     return result;
   }

@@ -43,7 +43,7 @@ struct AxisProfile {
   std::vector<ProfileStep> steps;  ///< ascending
 };
 
-/// Profiles about the axes of all cylinders of the model, outer ones and bores.
+/// Profiles about the axes of all cylinders of the model, and of its cones, outer ones and bores.
 struct AxisProfiles {
   std::vector<AxisProfile> shafts;
   std::vector<AxisProfile> bores;
