@@ -100,11 +100,12 @@ Results run_studies(const Arguments& given) {
     std::fprintf(stderr, "verdicts of many moves\n");
     JudgedMoves judged = run_judged_moves(methods, given.plan);
     results.tables.push_back(std::move(judged.table));
-    results.has_wrong_verdict = judged.dowel_wrong != 0;
+    results.has_wrong_verdict = results.has_wrong_verdict || judged.dowel_wrong != 0;
   }
   if (is_wanted(given.studies, "error")) {
     std::fprintf(stderr, "run time against error\n");
     const std::vector<ErrorPoint> points = run_error_study(given.plan);
+    results.has_wrong_verdict = results.has_wrong_verdict || has_wrong_exact_verdict(points);
     for (Table& table : error_tables(points)) results.tables.push_back(std::move(table));
     results.charts["time-against-error"] = error_chart(points);
   }

@@ -33,6 +33,10 @@ struct ErrorPoint {
 
 std::vector<ErrorPoint> run_error_study(const Plan& plan);
 
+/// Whether dowel's exact mode told interference wrongly, by more than a tenth of its tolerance from
+/// where it begins.
+bool has_wrong_exact_verdict(const std::vector<ErrorPoint>& points);
+
 std::vector<Table> error_tables(const std::vector<ErrorPoint>& points);
 Chart error_chart(const std::vector<ErrorPoint>& points);
 
