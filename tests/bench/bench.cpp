@@ -21,7 +21,7 @@ namespace dowel::bench {
 
 namespace {
 
-constexpr std::array kStudies{"moves",   "growth", "judged",    "error",
+constexpr std::array kStudies{"moves",   "growth", "judged",    "error", "solids",
                               "objects", "skips",  "stability", "rules"};
 
 struct Arguments {
@@ -106,8 +106,14 @@ Results run_studies(const Arguments& given) {
     std::fprintf(stderr, "run time against error\n");
     const std::vector<ErrorPoint> points = run_error_study(given.plan);
     results.has_wrong_verdict = results.has_wrong_verdict || has_wrong_exact_verdict(points);
-    for (Table& table : error_tables(points)) results.tables.push_back(std::move(table));
+    results.tables.push_back(error_table(points));
     results.charts["time-against-error"] = error_chart(points);
+  }
+  if (is_wanted(given.studies, "solids")) {
+    std::fprintf(stderr, "run time against error by OpenCascade\n");
+    const std::vector<ErrorPoint> points = run_solid_study(given.plan);
+    results.has_wrong_verdict = results.has_wrong_verdict || has_wrong_exact_verdict(points);
+    results.tables.push_back(solid_table(points));
   }
   const auto take = [&](const char* study, std::vector<Table> (*run_study)(const Plan&)) {
     if (!is_wanted(given.studies, study)) return;

@@ -8,6 +8,7 @@
 #include "known_pair.h"
 #include "methods.h"
 #include "random_geometry.h"
+#include "solid_pair.h"
 
 namespace dowel::bench {
 
@@ -64,24 +65,19 @@ std::vector<Setting> settings() {
   return result;
 }
 
-struct Path {
-  std::vector<Pose> poses;
-  std::vector<double> gaps_mm;
-};
-
-Path path_of(const KnownPair& pair, const Pose& X_WS, std::size_t count) {
-  Path path;
+PlacedPair on_its_path(const KnownPair& pair, std::size_t count) {
+  PlacedPair result{pair.name, pair.moving, pair.still, {}, {}};
   for (std::size_t i = 0; i < count; ++i) {
     const double s = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-    path.gaps_mm.push_back(swept_gap_mm(s, kLeastGap_mm, kLargestGap_mm));
-    path.poses.push_back(X_WS * pair.X_SM(path.gaps_mm.back(), 5.0 * s));
+    result.gaps_mm.push_back(swept_gap_mm(s, kLeastGap_mm, kLargestGap_mm));
+    result.X_SM.push_back(pair.X_SM(result.gaps_mm.back(), 5.0 * s));
   }
-  return path;
+  return result;
 }
 
-void judge(const KnownPair& pair, const Run& run, const Path& path, ErrorPoint& point) {
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    const double gap = path.gaps_mm[i];
+void judge(const PlacedPair& pair, const Run& run, ErrorPoint& point) {
+  for (std::size_t i = 0; i < pair.gaps_mm.size(); ++i) {
+    const double gap = pair.gaps_mm[i];
     ++point.judged;
     const bool hit = run.answers[i].hit;
     if (hit != (gap < 0.0)) {
@@ -98,17 +94,20 @@ void judge(const KnownPair& pair, const Run& run, const Path& path, ErrorPoint& 
 }
 
 /// What the method says of how far or how deep, where it says so.
-void judge_measures(Checker& checker, const Path& path, ErrorPoint& point) {
-  for (std::size_t i = 0; i < path.poses.size(); i += 5) {
-    if (const auto gap = checker.measured_gap_mm(path.poses[i])) {
-      point.measured_off_mm = std::max(point.measured_off_mm, std::abs(*gap - path.gaps_mm[i]));
+void judge_measures(Checker& checker, const PlacedPair& pair, const std::vector<Pose>& poses,
+                    ErrorPoint& point) {
+  for (std::size_t i = 0; i < poses.size(); i += 5) {
+    if (const auto gap = checker.measured_gap_mm(poses[i])) {
+      point.measured_off_mm = std::max(point.measured_off_mm, std::abs(*gap - pair.gaps_mm[i]));
     }
   }
 }
 
 /// All settings of one fineness on one pair, taking turns.
-void run_pair(const KnownPair& pair, const Path& path, const Pose& X_WS,
-              std::span<const Setting> settings, std::span<ErrorPoint> points, std::size_t rounds) {
+void run_pair(const PlacedPair& pair, const Pose& X_WS, std::span<const Setting> settings,
+              std::span<ErrorPoint> points, std::size_t rounds) {
+  std::vector<Pose> poses;
+  for (const Pose& X_SM : pair.X_SM) poses.push_back(X_WS * X_SM);
   std::vector<std::unique_ptr<Checker>> checkers;
   std::vector<Run> runs;
   for (const Setting& setting : settings) {
@@ -116,17 +115,17 @@ void run_pair(const KnownPair& pair, const Path& path, const Pose& X_WS,
     checkers.back()->add(placed(pair.still, X_WS));
     checkers.back()->set_moving(pair.moving);
     checkers.back()->finish();
-    runs.push_back(blank_run(path.poses.size()));
+    runs.push_back(blank_run(poses.size()));
   }
   for (std::size_t round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < settings.size(); ++i) {
-      run_timed(*checkers[i], path.poses, runs[i]);
-      run_batch(*checkers[i], path.poses, runs[i]);
+      run_timed(*checkers[i], poses, runs[i]);
+      run_batch(*checkers[i], poses, runs[i]);
     }
   }
   for (std::size_t i = 0; i < settings.size(); ++i) {
-    judge(pair, runs[i], path, points[i]);
-    judge_measures(*checkers[i], path, points[i]);
+    judge(pair, runs[i], points[i]);
+    judge_measures(*checkers[i], pair, poses, points[i]);
     if (runs[i].batch_mean_us > points[i].slowest_us) {
       points[i].slowest_us = runs[i].batch_mean_us;
       points[i].slowest_on = pair.name;
@@ -135,14 +134,10 @@ void run_pair(const KnownPair& pair, const Path& path, const Pose& X_WS,
   }
 }
 
-std::string tolerance_text(double tolerance_mm) {
-  return tolerance_mm > 0.0 ? text(tolerance_mm) : "none";
-}
-
-}  // namespace
-
-std::vector<ErrorPoint> run_error_study(const Plan& plan) {
-  std::vector<Setting> all = settings();
+/// Runs all settings over the pairs that `pairs_at` gives for a facet error.
+std::vector<ErrorPoint> run_settings(
+    std::vector<Setting> all, std::size_t rounds,
+    const std::function<std::vector<PlacedPair>(double facet_error_mm)>& pairs_at) {
   std::vector<std::string> order;  // of the methods, as they were named
   order.reserve(all.size());
   for (const Setting& setting : all) order.push_back(setting.method);
@@ -156,17 +151,15 @@ std::vector<ErrorPoint> run_error_study(const Plan& plan) {
     points.back().facet_error_mm = setting.facet_error_mm;
     points.back().tolerance_mm = setting.tolerance_mm;
   }
-  const std::size_t poses = std::max<std::size_t>(plan.poses / 4, 24);
   for (std::size_t first = 0; first < all.size();) {
     std::size_t count = 0;
     const double error = all[first].facet_error_mm;
     while (first + count < all.size() && all[first + count].facet_error_mm == error) ++count;
     testing::RandomGeometry random(71);
-    const std::vector<KnownPair> pairs = known_pairs({.facet_error_mm = error});
-    for (const KnownPair& pair : pairs) {
-      const Pose X_WS = random.pose(kReach_mm);
-      run_pair(pair, path_of(pair, X_WS, poses), X_WS, std::span(all).subspan(first, count),
-               std::span(points).subspan(first, count), plan.rounds);
+    const std::vector<PlacedPair> pairs = pairs_at(error);
+    for (const PlacedPair& pair : pairs) {
+      run_pair(pair, random.pose(kReach_mm), std::span(all).subspan(first, count),
+               std::span(points).subspan(first, count), rounds);
     }
     for (std::size_t i = first; i < first + count; ++i) {
       points[i].mean_us /= static_cast<double>(pairs.size());
@@ -179,6 +172,35 @@ std::vector<ErrorPoint> run_error_study(const Plan& plan) {
   return points;
 }
 
+std::string tolerance_text(double tolerance_mm) {
+  return tolerance_mm > 0.0 ? text(tolerance_mm) : "none";
+}
+
+std::string wrong_text(const ErrorPoint& p) {
+  return std::to_string(p.wrong) + " of " + std::to_string(p.judged);
+}
+
+}  // namespace
+
+std::vector<ErrorPoint> run_error_study(const Plan& plan) {
+  const std::size_t poses = std::max<std::size_t>(plan.poses / 4, 24);
+  return run_settings(settings(), plan.rounds, [&](double facet_error_mm) {
+    std::vector<PlacedPair> result;
+    for (const KnownPair& pair : known_pairs({.facet_error_mm = facet_error_mm})) {
+      result.push_back(on_its_path(pair, poses));
+    }
+    return result;
+  });
+}
+
+std::vector<ErrorPoint> run_solid_study(const Plan& plan) {
+  std::vector<Setting> chosen = settings();
+  std::erase_if(chosen, [](const Setting& s) { return s.method == kExactByTolerance; });
+  const SolidPairs pairs(std::max<std::size_t>(plan.poses / 40, 3));
+  return run_settings(std::move(chosen), plan.rounds,
+                      [&](double facet_error_mm) { return pairs.faceted(facet_error_mm); });
+}
+
 bool has_wrong_exact_verdict(const std::vector<ErrorPoint>& points) {
   return std::ranges::any_of(points, [](const ErrorPoint& p) {
     return (p.method == kExact || p.method == kExactByTolerance) &&
@@ -186,30 +208,47 @@ bool has_wrong_exact_verdict(const std::vector<ErrorPoint>& points) {
   });
 }
 
-std::vector<Table> error_tables(const std::vector<ErrorPoint>& points) {
+Table error_table(const std::vector<ErrorPoint>& points) {
   Table table{
       "Run time against error",
       "Pairs whose gap or depth is known exactly (a pin in its hole, cylinders on a plane, beside "
       "and across a post, a ball on a plane, a cone in its countersink, a block and a drilled "
-      "riser "
-      "on a plane) go from 1 mm apart to 1 mm deep and back, turning, in random places. Facet "
-      "error and tolerance in mm; mean time of a check in microseconds, and of the pair that took "
-      "longest; wrong answers to \"is "
-      "there interference?\"; the largest gap called interference and the largest depth called "
-      "none, in mm; the larger of the two measured from the method's own threshold (dowel's is its "
-      "tolerance, the others' is 0), with the pair; the largest error of the gap or depth that the "
-      "method measures, in mm.",
+      "riser on a plane) go from 1 mm apart to 1 mm deep and back, turning, in random places. "
+      "Facet error and tolerance in mm; mean time of a check in microseconds, and of the pair that "
+      "took longest; wrong answers to \"is there interference?\"; the largest gap called "
+      "interference and the largest depth called none, in mm; the larger of the two measured from "
+      "the method's own threshold (dowel's is its tolerance, the others' is 0), with the pair; the "
+      "largest error of the gap or depth that the method measures, in mm.",
       {"method", "facet error", "tolerance", "time", "slowest", "wrong", "gap hit", "depth missed",
        "off its threshold", "on", "measure off by"},
       {}};
   for (const ErrorPoint& p : points) {
     table.rows.push_back({p.method, text(p.facet_error_mm), tolerance_text(p.tolerance_mm),
                           text(p.mean_us), text(p.slowest_us) + " (" + p.slowest_on + ")",
-                          std::to_string(p.wrong) + " of " + std::to_string(p.judged),
-                          text(p.gap_hit_mm), text(p.depth_missed_mm), text(p.off_threshold_mm),
-                          p.off_on, p.measured_off_mm > 0.0 ? text(p.measured_off_mm) : "–"});
+                          wrong_text(p), text(p.gap_hit_mm), text(p.depth_missed_mm),
+                          text(p.off_threshold_mm), p.off_on,
+                          p.measured_off_mm > 0.0 ? text(p.measured_off_mm) : "–"});
   }
-  return {table};
+  return table;
+}
+
+Table solid_table(const std::vector<ErrorPoint>& points) {
+  Table table{
+      "Run time against error, judged by OpenCascade",
+      "Pairs of exact solids as fixtures have them (drilled and slotted plates, pins, nuts, "
+      "straps, "
+      "cones, tori, rounded blocks) from 1 mm apart to 1 mm moved into each other along the "
+      "shortest way; the truth is OpenCascade's distance, and the largest ball found in its "
+      "Boolean's volume. Columns as in the table before.",
+      {"method", "facet error", "tolerance", "time", "wrong", "gap hit", "depth missed",
+       "off its threshold", "on"},
+      {}};
+  for (const ErrorPoint& p : points) {
+    table.rows.push_back({p.method, text(p.facet_error_mm), tolerance_text(p.tolerance_mm),
+                          text(p.mean_us), wrong_text(p), text(p.gap_hit_mm),
+                          text(p.depth_missed_mm), text(p.off_threshold_mm), p.off_on});
+  }
+  return table;
 }
 
 Chart error_chart(const std::vector<ErrorPoint>& points) {

@@ -31,13 +31,18 @@ struct ErrorPoint {
   double off_mm() const { return std::max(gap_hit_mm, depth_missed_mm); }
 };
 
+/// Over pairs whose gap is a formula.
 std::vector<ErrorPoint> run_error_study(const Plan& plan);
+
+/// Over exact solids that OpenCascade judges by Booleans and distances, for one tolerance.
+std::vector<ErrorPoint> run_solid_study(const Plan& plan);
 
 /// Whether dowel's exact mode told interference wrongly, by more than a tenth of its tolerance from
 /// where it begins.
 bool has_wrong_exact_verdict(const std::vector<ErrorPoint>& points);
 
-std::vector<Table> error_tables(const std::vector<ErrorPoint>& points);
+Table error_table(const std::vector<ErrorPoint>& points);
+Table solid_table(const std::vector<ErrorPoint>& points);
 Chart error_chart(const std::vector<ErrorPoint>& points);
 
 }  // namespace dowel::bench

@@ -21,6 +21,15 @@ struct KnownPair {
   bool is_flat = false;  ///< only planes decide, so that facets are exact
 };
 
+/// Two elements in a row of poses, with the gap in each; negative: as deep in each other.
+struct PlacedPair {
+  std::string name;
+  ElementPtr moving;
+  ElementPtr still;
+  std::vector<Pose> X_SM;
+  std::vector<double> gaps_mm;
+};
+
 /// How the elements of known pairs are made. Radii and lengths are those of fixture elements at
 /// `scale` 1; gaps are not scaled.
 struct PairMesh {
