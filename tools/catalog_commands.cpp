@@ -137,6 +137,30 @@ std::string describe(const SlotShape& slot) {
   return text;
 }
 
+std::string describe(const OutlineLoop& loop) {
+  const auto count = [&loop](OutlineEdge::Type type) {
+    return static_cast<std::size_t>(std::ranges::count(loop, type, &OutlineEdge::type));
+  };
+  const std::size_t arcs = count(OutlineEdge::Type::Arc);
+  if (loop.size() == 1 && arcs == 1) return "a circle of " + short_number(2.0 * loop[0].radius_mm);
+  std::string text;
+  const auto add = [&text](std::size_t number, const char* what) {
+    if (number > 0) text += (text.empty() ? "" : ", ") + counted(number, what);
+  };
+  add(count(OutlineEdge::Type::Line), "line");
+  add(arcs, "arc");
+  add(count(OutlineEdge::Type::Chord), "chord");
+  return text;
+}
+
+std::string describe(const FaceOutline& outline) {
+  std::string text = outline.on_hull ? "on the hull" : "";
+  if (outline.outer.empty()) return text;
+  text += std::string(text.empty() ? "" : "; ") + "bounded by " + describe(outline.outer);
+  if (!outline.inner.empty()) text += ", " + counted(outline.inner.size(), "cutout");
+  return text;
+}
+
 std::string describe(const Feature& feature) {
   std::string text;
   switch (feature.kind) {
@@ -194,7 +218,7 @@ std::string stated(const std::string& text) {
   return text.empty() ? "not stated" : text;
 }
 
-std::string features_text(const Element& element) {
+std::string features_text(const Element& element, const std::vector<FaceOutline>& outlines) {
   Table table({{"feature"},
                {"kind"},
                {"diameter", Align::Right},
@@ -202,17 +226,20 @@ std::string features_text(const Element& element) {
                {"at"},
                {"direction"},
                {""}});
+  auto outline = outlines.begin();
   for (const Feature& feature : element.features) {
     const bool has_diameter = feature.kind != FeatureKind::Face;
+    std::string text = describe(feature);
+    if (!has_diameter) text += "; " + describe(*outline++);
     table.add({feature.name, std::string(to_string(feature.kind)),
                has_diameter ? short_number(feature.diameter_mm) : "",
                has_diameter ? short_number(feature.depth_mm) : "", point_text(feature.origin),
-               point_text(feature.direction), describe(feature)});
+               point_text(feature.direction), std::move(text)});
   }
   return table.text();
 }
 
-std::string to_text(const Element& element) {
+std::string to_text(const Element& element, const std::vector<FaceOutline>& outlines) {
   const TriangleCounts& triangles = element.triangles;
   const std::vector<std::pair<const char*, std::string>> lines{
       {"name", element.name},
@@ -240,7 +267,7 @@ std::string to_text(const Element& element) {
     padded.resize(16, ' ');
     text += (value.empty() ? title : padded + printable(value)) + "\n";
   }
-  return text + "\n" + features_text(element) + circles_text(element);
+  return text + "\n" + features_text(element, outlines) + circles_text(element);
 }
 
 void add_show(CLI::App& catalog) {
@@ -259,7 +286,10 @@ void add_show(CLI::App& catalog) {
     const Catalog elements = open(arguments->file);
     const std::optional<Element> element = elements.find(arguments->name);
     if (!element) fail_to_find(elements, arguments->name);
-    print_line(arguments->json ? to_line(tools::to_json(*element)) : to_text(*element));
+    const std::vector<FaceOutline> outlines =
+        face_outlines(*elements.solid(arguments->name), element->features);
+    print_line(arguments->json ? to_line(tools::to_json(*element, outlines))
+                               : to_text(*element, outlines));
   });
 }
 

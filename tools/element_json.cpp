@@ -1,6 +1,7 @@
 #include "element_json.h"
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 
 namespace dowel::tools {
@@ -72,6 +73,32 @@ Json to_json(const Feature& feature) {
   return json;
 }
 
+Json to_json(const OutlineLoop& loop) {
+  Json json = Json::array();
+  for (const OutlineEdge& edge : loop) {
+    Json item;
+    item["type"] = edge.type == OutlineEdge::Type::Line  ? "line"
+                   : edge.type == OutlineEdge::Type::Arc ? "arc"
+                                                         : "chord";
+    item["from"] = tools::to_json(edge.from);
+    item["to"] = tools::to_json(edge.to);
+    if (edge.type == OutlineEdge::Type::Arc) {
+      item["center"] = tools::to_json(edge.center);
+      item["radius"] = edge.radius_mm;
+      item["turn"] = edge.turn_rad * 180.0 / std::numbers::pi;
+    }
+    json.push_back(std::move(item));
+  }
+  return json;
+}
+
+void add_outline(const FaceOutline& outline, Json& json) {
+  json["on_hull"] = outline.on_hull;
+  json["outline"]["outer"] = to_json(outline.outer);
+  json["outline"]["inner"] = Json::array();
+  for (const OutlineLoop& loop : outline.inner) json["outline"]["inner"].push_back(to_json(loop));
+}
+
 void add_design(const Element& element, Json& json) {
   json["role"] = element.role;
   json["description"] = element.description;
@@ -123,7 +150,7 @@ std::size_t count_features(const Element& element, FeatureKind kind) {
   return static_cast<std::size_t>(std::ranges::count(element.features, kind, &Feature::kind));
 }
 
-Json to_json(const Element& element) {
+Json to_json(const Element& element, const std::vector<FaceOutline>& outlines) {
   Json json;
   json["name"] = element.name;
   json["family"] = element.family;
@@ -138,7 +165,12 @@ Json to_json(const Element& element) {
   json["triangles"] = to_json(element.triangles);
   json["facet_error_mm"] = element.facet_error_mm;
   json["features"] = Json::array();
-  for (const Feature& feature : element.features) json["features"].push_back(to_json(feature));
+  auto outline = outlines.begin();
+  for (const Feature& feature : element.features) {
+    json["features"].push_back(to_json(feature));
+    if (feature.kind != FeatureKind::Face || outline == outlines.end()) continue;
+    add_outline(*outline++, json["features"].back());
+  }
   json["center_of_mass"] = to_json(element.center_of_mass);
   json["licence"] = element.licence;
   add_design(element, json);

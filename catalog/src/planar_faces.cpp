@@ -15,24 +15,6 @@ const PlaneSurface& plane_of(const FaceNode& node) {
   return std::get<PlaneSurface>(node.surface);
 }
 
-/// Centre of the circle in which `wall` cuts a plane square to its axis.
-std::optional<Eigen::Vector3d> circle_center(const Surface& wall, const PlaneSurface& plane) {
-  Axis axis;
-  if (const auto* cylinder = std::get_if<CylinderSurface>(&wall)) {
-    axis = {cylinder->origin, cylinder->axis};
-  } else if (const auto* cone = std::get_if<ConeSurface>(&wall)) {
-    axis = {cone->apex, cone->axis};
-  } else if (const auto* torus = std::get_if<TorusSurface>(&wall)) {
-    axis = {torus->center, torus->axis};
-  } else if (const auto* sphere = std::get_if<SphereSurface>(&wall)) {
-    axis = {sphere->center, plane.normal};
-  } else {
-    return std::nullopt;
-  }
-  if (!axis.is_parallel(plane.normal)) return std::nullopt;
-  return axis.at(axis.height_mm(plane));
-}
-
 /// Area and first moment of pieces of one plane, about a point of it.
 struct PlaneSums {
   std::vector<double> areas_mm2;
@@ -138,6 +120,23 @@ std::vector<bool> facets_of_curves(const std::vector<FaceNode>& graph) {
 }
 
 }  // namespace
+
+std::optional<Eigen::Vector3d> circle_center(const Surface& wall, const PlaneSurface& plane) {
+  Axis axis;
+  if (const auto* cylinder = std::get_if<CylinderSurface>(&wall)) {
+    axis = {cylinder->origin, cylinder->axis};
+  } else if (const auto* cone = std::get_if<ConeSurface>(&wall)) {
+    axis = {cone->apex, cone->axis};
+  } else if (const auto* torus = std::get_if<TorusSurface>(&wall)) {
+    axis = {torus->center, torus->axis};
+  } else if (const auto* sphere = std::get_if<SphereSurface>(&wall)) {
+    axis = {sphere->center, plane.normal};
+  } else {
+    return std::nullopt;
+  }
+  if (!axis.is_parallel(plane.normal)) return std::nullopt;
+  return axis.at(axis.height_mm(plane));
+}
 
 std::uint32_t largest_face(const std::vector<FaceNode>& graph,
                            const std::vector<std::uint32_t>& faces) {

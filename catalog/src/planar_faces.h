@@ -1,11 +1,16 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "dowel/catalog/feature.h"
 #include "face_graph.h"
 
 namespace dowel {
+
+/// Centre of the circle in which `wall` cuts a plane square to its axis; nothing where it cuts it
+/// in no circle.
+std::optional<Eigen::Vector3d> circle_center(const Surface& wall, const PlaneSurface& plane);
 
 /// The largest of coplanar faces. Which of two that are equal does not matter to its normal.
 std::uint32_t largest_face(const std::vector<FaceNode>& graph,
