@@ -91,7 +91,10 @@ class RimTracer {
   OutlineEdge side(const RimEdge& rim) const {
     OutlineEdge edge{Type::Chord, solid_.vertices[rim.from], solid_.vertices[rim.to]};
     const Surface& wall = graph_[rim.face_across].surface;
-    if (is_plane(wall)) {
+    const auto* const cylinder = std::get_if<CylinderSurface>(&wall);
+    const bool lies_along =
+        cylinder != nullptr && std::abs(cylinder->axis.dot(normal_)) <= kCoaxial_rad;
+    if (is_plane(wall) || lies_along) {
       edge.type = Type::Line;
     } else if (const auto center = circle_center(wall, plane_)) {
       edge.type = Type::Arc;
@@ -121,7 +124,7 @@ bool join(OutlineEdge& edge, const OutlineEdge& next) {
     return is_one;
   }
   if (edge.type == Type::Arc || next.type == Type::Arc) return false;
-  // A cylinder along the plane leaves it in a line, too: what is straight is one.
+  // Free-form faces may leave it in a line, too: what is straight is one.
   const Vector3d whole = next.to - edge.from;
   const double length_mm = whole.norm();
   if (!(length_mm > 0.0) || !(whole.dot(edge.to - edge.from) > 0.0) ||

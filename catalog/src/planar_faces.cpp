@@ -26,12 +26,15 @@ struct PlaneSums {
 };
 
 /// Facets between two corners of a circle leave out (or put in) the segment between chord and arc.
-void add_circle_segments(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
+/// False where something else than lines and circles bounds the face, too.
+bool add_circle_segments(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
                          const FaceNode& node, const Eigen::Vector3d& middle, PlaneSums& sums) {
   const PlaneSurface& plane = plane_of(node);
+  bool is_exact = true;
   for (const RimEdge& edge : node.rim) {
-    const std::optional<Eigen::Vector3d> center =
-        circle_center(graph[edge.face_across].surface, plane);
+    const Surface& wall = graph[edge.face_across].surface;
+    const std::optional<Eigen::Vector3d> center = circle_center(wall, plane);
+    is_exact = is_exact && (center || is_plane(wall));
     if (!center) continue;
     const Eigen::Vector3d a = solid.vertices[edge.from] - *center;
     const Eigen::Vector3d b = solid.vertices[edge.to] - *center;
@@ -45,27 +48,30 @@ void add_circle_segments(const FacetedSolid& solid, const std::vector<FaceNode>&
     const double reach_mm = 2.0 / 3.0 * std::pow(radius_mm * half_chord, 3) / std::abs(area_mm2);
     sums.add(area_mm2, *center + reach_mm * bisector.normalized() - middle);
   }
+  return is_exact;
 }
 
 Feature make_face(const FacetedSolid& solid, const std::vector<FaceNode>& graph,
                   std::vector<std::uint32_t> faces) {
   const PlaneSurface& plane = plane_of(graph[largest_face(graph, faces)]);
   PlaneSums sums;
-  std::vector<double> exact_areas_mm2;
+  std::vector<double> stated_areas_mm2;
+  bool is_exact = true;
   for (const std::uint32_t face : faces) {
-    exact_areas_mm2.push_back(graph[face].area_mm2);
+    stated_areas_mm2.push_back(graph[face].area_mm2);
     for (const std::uint32_t t : graph[face].triangles) {
       const auto corners = canonical_corners(solid, t);
       sums.add(0.5 * plane.normal.dot(doubled_area(corners)),
                (corners[0] + corners[1] + corners[2]) / 3.0 - plane.origin);
     }
-    add_circle_segments(solid, graph, graph[face], plane.origin, sums);
+    is_exact = add_circle_segments(solid, graph, graph[face], plane.origin, sums) && is_exact;
   }
   Feature feature;
   feature.kind = FeatureKind::Face;
   feature.direction = plane.normal;
-  feature.area_mm2 = ordered_sum(exact_areas_mm2);
   const double area_mm2 = ordered_sum(sums.areas_mm2);
+  // A CAD kernel integrates along the curves of a file, some of which are splines near a circle.
+  feature.area_mm2 = is_exact ? area_mm2 : ordered_sum(stated_areas_mm2);
   feature.origin = plane.origin;
   if (area_mm2 > 0.0) {
     const Eigen::Vector3d centroid = ordered_sum(sums.moments_mm3) / area_mm2;

@@ -33,6 +33,7 @@
 #include "library/manifest.h"
 #include "library/systems.h"
 #include "library/write_library.h"
+#include "odd_outlines.h"
 #include "volumes.h"
 
 namespace dowel::library {
@@ -274,7 +275,11 @@ void expect_catalogue() {
     for (const std::string& line : testing::differences(part.features, *element)) FAIL_CHECK(line);
     for (const Feature& feature : part.features) ++counts[feature.kind];
     CAPTURE(part.name);
-    if (part.features.size() < 20) expect_likely_threads(part, *catalog.solid(part.name));
+    if (part.features.size() < 20) {
+      const auto solid = catalog.solid(part.name);
+      expect_likely_threads(part, *solid);
+      for (const std::string& line : testing::odd_outlines(*solid, *element)) FAIL_CHECK(line);
+    }
     CHECK(element->family == part.name.substr(0, part.name.rfind('/')));
     CHECK(element->role == part.role);
     CHECK(element->description == part.description);
