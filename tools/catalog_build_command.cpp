@@ -34,6 +34,8 @@ struct BuildArguments {
   bool force = false;
   std::optional<std::string> licence;
   std::optional<std::string> assemblies;
+  double max_seconds = ImportOptions().max_seconds;
+  std::size_t max_memory_mb = ImportOptions().max_memory_mb;
   bool json = false;
 };
 
@@ -126,6 +128,8 @@ int run_build(const BuildArguments& arguments) {
   options.jobs = arguments.jobs;
   options.force = arguments.force;
   options.licence = arguments.licence;
+  options.import.max_seconds = arguments.max_seconds;
+  options.import.max_memory_mb = arguments.max_memory_mb;
   if (arguments.assemblies) options.assemblies = *arguments.assemblies;
   const std::vector<std::filesystem::path> paths(arguments.paths.begin(), arguments.paths.end());
 
@@ -188,6 +192,14 @@ void add_build_command(CLI::App& catalog, int& exit_code) {
       ->add_option("--assemblies", arguments->assemblies,
                    "folder to write a project to for each file that places more than one part")
       ->type_name("FOLDER");
+  command
+      ->add_option("--max-seconds", arguments->max_seconds,
+                   "processor time for a file; four times that by the clock")
+      ->check(CLI::Range(1.0, 1.0e6))
+      ->capture_default_str();
+  command->add_option("--max-memory", arguments->max_memory_mb, "address space for a file in MB")
+      ->check(CLI::Range(std::size_t{256}, std::size_t{1'000'000}))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "one line of JSON a file");
   command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });
 }

@@ -20,7 +20,7 @@ namespace dowel {
 namespace {
 
 /// Grows when the same file would give other elements than before, so that catalogues refresh.
-constexpr int kPipelineVersion = 6;
+constexpr int kPipelineVersion = 7;
 
 /// A path of the build. `problem` tells why it leads to no file.
 struct Input {
@@ -93,6 +93,14 @@ std::string settings_line(const ImportOptions& options) {
                 "pipeline %d, deflection %.17g mm, angle %.17g rad, %u triangles, %s",
                 kPipelineVersion, options.deflection_mm, options.angular_deflection_rad,
                 options.max_triangles, options.whole_file ? "whole file" : "parts");
+  return line;
+}
+
+/// What a file that failed was allowed: with more of it, it may not.
+std::string limits_line(const ImportOptions& options) {
+  char line[80];
+  std::snprintf(line, sizeof line, ", at most %.17g s, %zu MB", options.max_seconds,
+                options.max_memory_mb);
   return line;
 }
 
@@ -259,7 +267,9 @@ const LibraryManifest* Build::manifest_of(const std::filesystem::path& file) {
 bool Build::is_unchanged(const Job& job, const SourceRecord& known) const {
   const bool same_licence =
       known.elements.empty() || !options_.licence || *options_.licence == job.licence;
-  return known.sha256 == job.source.sha256 && known.settings == job.source.settings && same_licence;
+  std::string settings = job.source.settings;
+  if (known.status == to_string(BuildStatus::Failed)) settings += limits_line(options_.import);
+  return known.sha256 == job.source.sha256 && known.settings == settings && same_licence;
 }
 
 /// Puts what was read into the catalogue and completes the job's report. Always true.
@@ -304,6 +314,8 @@ bool Build::store(Job& job, ImportResult&& result) {
   } else {
     job.source.status = to_string(job.built.status);
     job.source.reason = job.built.reason;
+    if (job.built.status == BuildStatus::Failed)
+      job.source.settings += limits_line(options_.import);
     for (const ImportedInstance& instance : result.instances) {
       if (records.empty()) break;
       job.source.instances.push_back({instance.name, instance.part, instance.X_WI});

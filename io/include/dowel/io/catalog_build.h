@@ -62,7 +62,8 @@ using BuildCallback =
 /// catalogue at `catalog_file`, which is made where it is missing. One transaction a file: what a
 /// file gave before is replaced, but kept where the file fails now. A file that fails is an answer,
 /// as is a path that is missing; both are in the report, and the rest is read. Files that were
-/// Empty or Failed before are not tried again until they change, unless forced. Where all that is
+/// Empty or Failed before are not tried again until they change, unless forced; Failed ones also
+/// where the limits on time or memory are others. Where all that is
 /// read fails, no catalogue is made.
 ///
 /// The report is sorted within a folder and otherwise in the order of `paths`; a file that several
