@@ -103,6 +103,11 @@ Part key(const System& system, const KeySize& size) {
     part.features.push_back(fitted(face(side > 0.0 ? "slot-back" : "slot-front",
                                         {0.0, side * reach.y(), half_mm / 2.0}, {0.0, side, 0.0}),
                                    "h6"));
+    if (upper_mm == size.width_mm) continue;  // one face from bottom to top
+    part.features.push_back(
+        fitted(face(side > 0.0 ? "key-slot-back" : "key-slot-front",
+                    {0.0, side * upper_reach.y(), 1.5 * half_mm}, {0.0, side, 0.0}),
+               "h6"));
   }
   part.colour = kSteelColour;
   return part;
