@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -109,7 +110,13 @@ void add_search(CLI::App& catalog) {
   command->add_flag("--json", arguments->json, "one line of JSON an element");
   command->callback([arguments] {
     const SearchQuery query = parse_query(arguments->terms);
-    print_elements(search(open(arguments->file), query), arguments->json);
+    const Catalog elements = open(arguments->file);
+    const std::vector<Element> found = search(elements, query);
+    print_elements(found, arguments->json);
+    if (!found.empty()) return;
+    for (const std::string& reason : explain_no_match(elements, query)) {
+      std::cerr << printable(reason) << '\n';
+    }
   });
 }
 

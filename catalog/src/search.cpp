@@ -98,7 +98,14 @@ std::vector<Token> tokens_of(std::span<const std::string> terms) {
                                            ", \"" + token.text + "\": expected " + expected);
 }
 
-double parse_number(const Token& token, std::string_view text) {
+std::string_view unit_of(Quantity quantity) {
+  if (quantity == Quantity::Mass) return "kg";
+  if (quantity == Quantity::Volume) return "mm3";
+  return quantity == Quantity::Holes ? "" : "mm";
+}
+
+double parse_number(const Token& token, std::string_view text, std::string_view unit) {
+  if (text.ends_with(unit)) text.remove_suffix(unit.size());
   double value = 0.0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
@@ -109,14 +116,21 @@ double parse_number(const Token& token, std::string_view text) {
 
 Quantity parse_quantity(const Token& token, std::string_view name) {
   std::string known;
+  std::vector<std::string> words;
   for (const auto& [word, quantity] : kQuantities) {
     if (word == name) return quantity;
-    if (word.size() > 1) known += (known.empty() ? "" : ", ") + std::string(word);
+    if (word.size() == 1) continue;
+    known += (known.empty() ? "" : ", ") + std::string(word);
+    words.emplace_back(word);
   }
   for (const auto& [word, what] : kLabels) {
-    if (!contains(known, word)) known += ", " + std::string(word);
+    if (std::ranges::find(words, word) != words.end()) continue;
+    known += ", " + std::string(word);
+    words.emplace_back(word);
   }
-  fail(token, "one of " + known + " before the comparison");
+  const std::vector<std::string> guess = closest_names(name, words, 1);
+  fail(token, "one of " + known + " before the comparison" +
+                  (guess.empty() ? "" : "; did you mean " + guess.front() + "?"));
 }
 
 /// "M12", "m12x1.5".
@@ -136,28 +150,32 @@ std::optional<SearchLabel> parse_label(const Token& token, std::string_view name
   if (comparison != "=" && comparison != "==") fail(token, "= after " + std::string(name));
   if (text.empty()) fail(token, "a word after =");
   if (what == What::Thread && !is_thread(text)) fail(token, "a thread such as M12 or M12x1.5");
-  return SearchLabel{what, what == What::Fit ? std::string(text) : lower(text)};
+  return SearchLabel{what, what == What::Fit ? std::string(text) : lower(text), token.text};
 }
 
 SearchCondition parse_condition(const Token& token, Quantity quantity,
                                 const std::string& comparison, std::string_view number) {
   SearchCondition condition;
   condition.quantity = quantity;
+  condition.term = token.text;
+  const auto value = [&](std::string_view text) {
+    return parse_number(token, text, unit_of(quantity));
+  };
   if (comparison == "=" || comparison == "==") {
     const std::size_t dots = number.find("..");
     const bool is_range = dots != std::string_view::npos;
-    const double low = parse_number(token, number.substr(0, dots));
-    const double high = is_range ? parse_number(token, number.substr(dots + 2)) : low;
+    const double low = value(number.substr(0, dots));
+    const double high = is_range ? value(number.substr(dots + 2)) : low;
     condition.low = low - kCoincident_mm;
     condition.high = high + kCoincident_mm;
   } else if (comparison == ">=") {
-    condition.low = parse_number(token, number) - kCoincident_mm;
+    condition.low = value(number) - kCoincident_mm;
   } else if (comparison == ">") {
-    condition.low = parse_number(token, number) + kCoincident_mm;
+    condition.low = value(number) + kCoincident_mm;
   } else if (comparison == "<=") {
-    condition.high = parse_number(token, number) + kCoincident_mm;
+    condition.high = value(number) + kCoincident_mm;
   } else if (comparison == "<") {
-    condition.high = parse_number(token, number) - kCoincident_mm;
+    condition.high = value(number) - kCoincident_mm;
   } else {
     fail(token, "one of =, <, <=, >, >=");
   }
@@ -328,8 +346,9 @@ SearchQuery parse_query(std::span<const std::string> terms) {
     } else if ((word == "hole" || word == "shaft") && i + 1 < tokens.size() &&
                is_thread(tokens[i + 1].text) &&
                tokens[i + 1].text.find_first_of(kOperators) == std::string::npos) {
-      query.labels.push_back(
-          {word == "hole" ? What::HoleThread : What::ShaftThread, lower(tokens[++i].text)});
+      const std::string& thread = tokens[++i].text;
+      query.labels.push_back({word == "hole" ? What::HoleThread : What::ShaftThread, lower(thread),
+                              word + " " + thread});
     } else {
       query.words.push_back(word);
     }

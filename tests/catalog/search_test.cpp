@@ -86,8 +86,9 @@ TEST_CASE("Blanks around a comparison do not matter") {
 }
 
 TEST_CASE("A term that makes no sense is an error that names it", "[fault]") {
-  for (const char* term : {"height>=", "height>=abc", ">=80", "colour=3", "height=>80", "h=1..",
-                           "h=..2", "h=1e999", "h=nan", "h<>3", "=", "h=1=2", "h=12mm"}) {
+  for (const char* term :
+       {"height>=", "height>=abc", ">=80", "colour=3", "height=>80", "h=1..", "h=..2", "h=1e999",
+        "h=nan", "h<>3", "=", "h=1=2", "h=12kg", "mass=2mm"}) {
     CAPTURE(term);
     CHECK_THROWS_AS(parse_query(Words{term}), Error);
     CHECK_THROWS_WITH(parse_query(Words{term}), Catch::Contains(term));
@@ -127,6 +128,42 @@ TEST_CASE("Errors name the place in the query", "[fault]") {
                     Catch::Contains("character 7") && Catch::Contains("M12x1.5"));
   CHECK_THROWS_WITH(parse_query(Words{"role>3"}), Catch::Contains("expected = after role"));
   CHECK_THROWS_WITH(parse_query(Words{"role="}), Catch::Contains("a word after ="));
+}
+
+TEST_CASE("A number may carry the unit that it has anyway") {
+  const Element block = dowel::testing::block_record("block").element;
+  CHECK(finds(block, {"height=40mm"}) == finds(block, {"height=40"}));
+  CHECK(finds(block, {"height=1mm..400mm"}));
+  CHECK(finds(block, {"mass<2kg"}));
+  CHECK(finds(block, {"volume>1mm3"}));
+  CHECK_THROWS_WITH(parse_query(Words{"holes>=2mm"}), Catch::Contains("a number"));
+}
+
+TEST_CASE("A quantity that is misspelt is met with the one that was meant", "[fault]") {
+  CHECK_THROWS_WITH(parse_query(Words{"hieght>=80"}), Catch::Contains("did you mean height?"));
+  CHECK_THROWS_WITH(parse_query(Words{"colour=3"}), !Catch::Contains("did you mean"));
+}
+
+TEST_CASE("A search that finds nothing says which term is to blame and what may have been meant") {
+  const dowel::testing::TemporaryFolder folder;
+  dowel::Catalog catalog(folder / "c.db", dowel::Catalog::Access::ReadWrite);
+  for (const char* name : {"riser", "clamp"}) {
+    dowel::ElementRecord record = dowel::testing::block_record(name);
+    record.element.role = name;
+    catalog.put(dowel::testing::block_source(name), std::vector{record});
+  }
+  const auto why = [&catalog](const Words& terms) {
+    return dowel::explain_no_match(catalog, parse_query(terms));
+  };
+  CHECK(why({"rsier"}) == Words{"no element matches \"rsier\"; did you mean \"riser\"?"});
+  CHECK(why({"role=clmap", "riser"}) ==
+        Words{"no element matches \"role=clmap\"; did you mean \"clamp\"?"});
+  CHECK(why({"hole M13"}) == Words{"no element matches \"hole M13\"; did you mean \"M12\"?"});
+  CHECK(why({"length>=9000"}) == Words{"no element matches \"length>=9000\""});
+  CHECK(why({"height", "80"}).front() ==
+        "no element matches \"height\"; a size is compared, as in height>=1");
+  CHECK(why({"role=clamp", "role=riser"}) ==
+        Words{"each term matches some element, but none matches all of them"});
 }
 
 TEST_CASE("A search gives those that match, names before families before features") {

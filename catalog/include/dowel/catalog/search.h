@@ -31,6 +31,7 @@ struct SearchCondition {
   Quantity quantity = Quantity::Length;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
+  std::string term{};  ///< as it was typed, for messages
 };
 
 /// A word that the element, or some feature of it, must carry.
@@ -44,7 +45,8 @@ struct SearchLabel {
     Material      ///< of the element; a part of it will do
   };
   What what = What::Thread;
-  std::string text;  ///< but for Fit in lower case
+  std::string text;    ///< but for Fit in lower case
+  std::string term{};  ///< as it was typed, for messages
 };
 
 /// All of it must hold. Words are lower case; each must occur in the element's name, family, role,
@@ -57,8 +59,9 @@ struct SearchQuery {
 };
 
 /// Reads terms as a user types them: words, and `height>=80`, `hole=12`, `d<10`, `length=80..120`,
-/// `mass<=2`, `thread=M12`, `fit=H7`, `role=clamp`. `hole M12` is `hole=M12`: a hole with that
-/// thread. Lengths are mm and compared within kCoincident_mm, so that a riser of 80 mm is one of
+/// `mass<=2kg`, `thread=M12`, `fit=H7`, `role=clamp`. `hole M12` is `hole=M12`: a hole with that
+/// thread. Lengths are mm, and may say so (`height>=80mm`); they are compared within
+/// kCoincident_mm, so that a riser of 80 mm is one of
 /// `>=80`, whatever rounding its box carries. Throws Error{InvalidInput} naming the term, its place
 /// in the query and what is expected.
 SearchQuery parse_query(std::span<const std::string> terms);
@@ -68,6 +71,10 @@ bool matches(const Element& element, const SearchQuery& query);
 /// The elements that match, best first: by where the words occur (name before family before the
 /// rest), then by name. Reads no mesh.
 std::vector<Element> search(const Catalog& catalog, const SearchQuery& query);
+
+/// Why a search found nothing: a sentence for each term that no element matches even by itself,
+/// with what may have been meant; where each matches some, one that says so. Reads no mesh.
+std::vector<std::string> explain_no_match(const Catalog& catalog, const SearchQuery& query);
 
 /// Which of `candidates` a person who typed `name` may have meant, best first, at most `count`:
 /// those that begin with it, contain it, or are a few typing errors away; case does not matter.
