@@ -239,7 +239,14 @@ TEST_CASE("An element is shown with the documented keys in their order") {
   CHECK(shown["facet_error_mm"] == 0.0);
   REQUIRE(shown["features"].size() == 6);
   for (const Json& feature : shown["features"]) {
-    CHECK(keys_of(feature) == std::vector<std::string>{"name", "kind", "axis", "area_mm2"});
+    CHECK(keys_of(feature) ==
+          std::vector<std::string>{"name", "kind", "axis", "area_mm2", "on_hull", "outline"});
+    CHECK(feature["on_hull"] == true);
+    CHECK(feature["outline"]["inner"].empty());
+    REQUIRE(feature["outline"]["outer"].size() == 4);
+    const Json& edge = feature["outline"]["outer"][0];
+    CHECK(keys_of(edge) == std::vector<std::string>{"type", "from", "to"});
+    CHECK(edge["type"] == "line");
     CHECK(feature["kind"] == "face");
     CHECK(keys_of(feature["axis"]) == std::vector<std::string>{"origin", "direction"});
   }
