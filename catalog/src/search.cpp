@@ -236,9 +236,8 @@ std::vector<double> values(const Element& element, Quantity quantity) {
       for (const HoleSegment& segment : feature.segments) {
         if (segment.type == HoleSegment::Type::Cylinder) result.push_back(segment.diameter_mm);
       }
-    } else if (feature.kind == FeatureKind::Slot && quantity == Quantity::Slot) {
-      result.push_back(feature.diameter_mm);
-    } else if (feature.kind == FeatureKind::Shaft && wants_shafts) {
+    } else if ((feature.kind == FeatureKind::Slot && quantity == Quantity::Slot) ||
+               (feature.kind == FeatureKind::Shaft && wants_shafts)) {
       result.push_back(feature.diameter_mm);
     }
   }
@@ -346,9 +345,10 @@ SearchQuery parse_query(std::span<const std::string> terms) {
     } else if ((word == "hole" || word == "shaft") && i + 1 < tokens.size() &&
                is_thread(tokens[i + 1].text) &&
                tokens[i + 1].text.find_first_of(kOperators) == std::string::npos) {
-      const std::string& thread = tokens[++i].text;
-      query.labels.push_back({word == "hole" ? What::HoleThread : What::ShaftThread, lower(thread),
-                              word + " " + thread});
+      std::string term = tokens[i].text + ' ';
+      term += tokens[++i].text;
+      query.labels.push_back({word == "hole" ? What::HoleThread : What::ShaftThread,
+                              lower(tokens[i].text), std::move(term)});
     } else {
       query.words.push_back(word);
     }
