@@ -27,7 +27,7 @@ constexpr std::array kCommands{
             "ELEMENT [as NAME] [at X Y Z | at INST.FEATURE [pattern N] | on INST.FACE] "
             "[rot DEG [about x|y|z]]",
             "Places an element: with its origin at a point, or at a feature and mated with what it "
-            "meets there, or standing on a face.",
+            "meets there, or standing on a face. Tells where no straight way leads in.",
             "place H40-12/riser-80x80x40 as R1 on PLATE1.top rot 90", true, run_place},
     Command{
         "insert",
@@ -40,7 +40,8 @@ constexpr std::array kCommands{
             "[flip] | align INST.FEATURE INST.FEATURE | seat INST.FACE INST.FACE [offset MM] | "
             "slot INST.FEATURE INST.SLOT [offset MM] | angle INST.FEATURE INST.FEATURE DEG | "
             "fix INST INST",
-            "Makes a mate beside those that are there and keeps them; the first instance moves.",
+            "Makes a mate beside those that are there and keeps them; the first instance moves. "
+            "Tells where no straight way leads in.",
             "mate align R1.h2 PLATE1.C5", true, run_mate},
     Command{"unmate", "NUMBER | INST INST",
             "Takes out a mate by its number, or all between two instances; nothing moves.",

@@ -7,6 +7,7 @@
 #include "console_commands.h"
 #include "console_read.h"
 #include "console_text.h"
+#include "console_way.h"
 #include "dowel/assembly/suggest.h"
 #include "table.h"
 
@@ -144,6 +145,7 @@ Reply run_place(Console& console, Arguments& arguments) {
           ? console.session().place_at(element, placing.name, X_WI, *placing.at, arguments.line())
           : console.session().place(element, placing.name, X_WI, arguments.line());
   Reply reply = to_reply(report, "placed at");
+  add_way_in(console.session(), report, reply);
   reply.json["element"] = element;
   return reply;
 }
@@ -159,6 +161,7 @@ Reply run_insert(Console& console, Arguments& arguments) {
   const MoveReport report = console.session().insert(request, arguments.line());
   Reply reply = to_reply(report, "inserted at");
   if (report.made && report.made->thread) reply.text += ", threaded";
+  add_way_in(console.session(), report, reply);
   return reply;
 }
 

@@ -9,6 +9,7 @@
 #include "console_fit.h"
 #include "console_read.h"
 #include "console_text.h"
+#include "console_way.h"
 #include "dowel/assembly/fit.h"
 #include "table.h"
 
@@ -91,6 +92,7 @@ std::vector<std::uint32_t> read_mates(Console& console, Arguments& arguments) {
 Reply run_mate(Console& console, Arguments& arguments) {
   const MateRequest request = read_request(console, arguments);
   arguments.expect_end();
+  const Pose X_WI_before = console.session().instance(request.moving.instance).X_WI;
   const MoveReport report = console.session().mate(request, arguments.line());
   Reply reply = to_reply(report, "mated at");
   if (report.refused) return reply;
@@ -103,6 +105,8 @@ Reply run_mate(Console& console, Arguments& arguments) {
   const FreedomReport left = console.session().freedoms(report.instance);
   reply.text += "\n" + report.instance + ": " + freedoms_text(left);
   reply.json.update(to_json(left));
+  // What was there already did not come in now.
+  if (!(report.X_WI == X_WI_before)) add_way_in(console.session(), report, reply);
   return reply;
 }
 

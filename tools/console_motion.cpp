@@ -6,6 +6,7 @@
 #include "console_commands.h"
 #include "console_read.h"
 #include "console_text.h"
+#include "console_way.h"
 #include "table.h"
 
 namespace dowel::tools {
@@ -18,12 +19,6 @@ std::optional<DragMode> take_drag_mode(Arguments& arguments) {
     if (arguments.take(to_string(mode))) return mode;
   }
   return std::nullopt;
-}
-
-std::string names_text(const std::vector<Touch>& touches) {
-  std::string text;
-  for (const Touch& touch : touches) text += (text.empty() ? "" : ", ") + touch.with;
-  return text;
 }
 
 DragRequest read_drag(Console& console, Arguments& arguments) {
@@ -50,24 +45,6 @@ DragRequest read_drag(Console& console, Arguments& arguments) {
   }
   request.mode = take_drag_mode(arguments);
   return request;
-}
-
-std::string way_text(const WayOut& way) {
-  std::string text = "along " + way.along + " (" + point_text(way.direction_W) + "): ";
-  if (way.blocked_by.empty()) return text + "free, " + length_text(way.way_mm) + " mm to clear";
-  return text + "blocked by " + names_text(way.blocked_by) + " after " + length_text(way.free_mm) +
-         " of " + length_text(way.way_mm) + " mm";
-}
-
-Json to_json(const WayOut& way) {
-  Json json{{"along", way.along},
-            {"direction", tools::to_json(way.direction_W)},
-            {"free", way.blocked_by.empty()},
-            {"way_mm", way.way_mm},
-            {"free_mm", way.free_mm},
-            {"blocked_by", Json::array()}};
-  for (const Touch& touch : way.blocked_by) json["blocked_by"].push_back(touch.with);
-  return json;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "console_commands.h"
 #include "console_read.h"
 #include "console_text.h"
+#include "console_way.h"
 #include "dowel/assembly/snap.h"
 #include "table.h"
 
@@ -103,8 +104,10 @@ Reply run_snap(Console& console, Arguments& arguments) {
   }
   arguments.expect_end();
   const SnapOffer& offer = offers[number - 1];
-  return to_reply(console.session().put(name, offer.X_WI, offer.mates, arguments.line()),
-                  "snapped to");
+  const MoveReport report = console.session().put(name, offer.X_WI, offer.mates, arguments.line());
+  Reply reply = to_reply(report, "snapped to");
+  add_way_in(console.session(), report, reply);
+  return reply;
 }
 
 Reply run_where(Console& console, Arguments& arguments) {

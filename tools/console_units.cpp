@@ -7,6 +7,7 @@
 #include "console_commands.h"
 #include "console_read.h"
 #include "console_text.h"
+#include "console_way.h"
 #include "dowel/assembly/names.h"
 #include "dowel/assembly/project_diff.h"
 #include "dowel/assembly/sequence.h"
@@ -19,12 +20,6 @@ namespace {
 std::string names_text(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-std::string blockers_text(const WayOut& way) {
-  std::string text;
-  for (const Touch& touch : way.blocked_by) text += (text.empty() ? "" : ", ") + touch.with;
   return text;
 }
 
@@ -146,7 +141,7 @@ Reply run_sequence(Console& console, Arguments& arguments) {
       for (const Touch& touch : way.blocked_by) blockers.push_back(touch.with);
       json["ways"].push_back({{"along", way.along}, {"blocked_by", std::move(blockers)}});
       reply.text += "\n  along " + way.along + " (" + point_text(way.direction_W) +
-                    "): " + blockers_text(way) + " in the way";
+                    "): " + tools::names_text(way.blocked_by) + " in the way";
     }
     reply.json["blocked"].push_back(std::move(json));
   }

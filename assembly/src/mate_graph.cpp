@@ -5,12 +5,19 @@
 namespace dowel {
 namespace {
 
-/// Adds to `group` all parts that `joins(mate, group)` names, until there are no more.
+bool is_on(const Mate& mate, const PartNames& group) {
+  return group.contains(mate.moving.instance) || group.contains(mate.fixed.instance) ||
+         (mate.has_seat() && group.contains(mate.fixed_face.instance));
+}
+
+/// Adds to `group` all parts that `joins(mate, group)` names, until there are no more. Asks of
+/// mates alone that are on the group.
 template <class Joins>
 PartNames grown(PartNames group, const ProjectState& state, Joins&& joins) {
   for (bool grows = true; grows;) {
     grows = false;
     for (const auto& [number, mate] : state.mates) {
+      if (!is_on(mate, group)) continue;
       for (const std::string& part : joins(mate, group)) {
         if (group.insert(part).second) grows = true;
       }

@@ -137,6 +137,17 @@ struct Threading {
 
 void PlacedBodies::relieve(const std::string& name, const std::vector<Pose>& poses) {
   const Body& body = bodies_.at(name);
+  // Most bodies are of a kind that is known to form no thread with any other: no need to go through
+  // them all.
+  const auto is_known_apart = [&](std::size_t tapped, std::size_t screw) {
+    const auto known = may_thread_.find({tapped, screw});
+    return known != may_thread_.end() && !known->second;
+  };
+  if (std::ranges::all_of(kinds_, [&](const auto& entry) {
+        return is_known_apart(body.kind, entry.second) && is_known_apart(entry.second, body.kind);
+      })) {
+    return;
+  }
   std::vector<Threading> threadings(kinds_.size());
   for (const auto& [other_name, other] : bodies_) {
     if (other.id == body.id) continue;

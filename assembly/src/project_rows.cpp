@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <set>
 
 #include "design_rows.h"
 #include "dowel/assembly/names.h"
@@ -142,18 +141,21 @@ ProjectState changed(const ProjectState& state, const ProjectChange& change) {
 
 std::optional<std::string> find_defect(const ProjectState& state,
                                        const std::vector<std::string>& elements) {
-  std::set<std::uint32_t> numbers;
+  std::vector<std::uint32_t> numbers;
   for (const auto& [name, instance] : state.instances) {
     if (const auto defect = instance_name_defect(name)) {
       return "instance name \"" + name + "\" " + *defect;
     }
-    if (!numbers.insert(instance.number).second) {
-      return "two instances have the number " + std::to_string(instance.number);
-    }
+    numbers.push_back(instance.number);
     if (!std::ranges::binary_search(elements, instance.element)) {
       return "instance \"" + name + "\" is of element \"" + instance.element +
              "\", of which there is no copy";
     }
+  }
+  std::ranges::sort(numbers);
+  const auto twice = std::ranges::adjacent_find(numbers);
+  if (twice != numbers.end()) {
+    return "two instances have the number " + std::to_string(*twice);
   }
   for (const auto& [number, mate] : state.mates) {
     const bool sound = is_known(state, mate.moving) && is_known(state, mate.fixed) &&

@@ -124,9 +124,13 @@ struct Session::Impl {
   /// The state with the parts there. Throws Error{InvalidInput} where a mate would be lost.
   ProjectState dragged(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU);
 
-  /// Along the mates of a group with others, and up from the base.
-  std::vector<WayDirection> way_directions(const ProjectState& in,
-                                           const std::set<std::string>& group);
+  /// Along the mates of a group with others.
+  std::vector<WayDirection> mate_directions(const ProjectState& in,
+                                            const std::set<std::string>& group);
+  /// Up from the base: what is grounded, else what was there first. Nothing where that is in the
+  /// group.
+  std::optional<WayDirection> base_direction(const ProjectState& in,
+                                             const std::set<std::string>& group);
   /// Expects: `bodies` follow `in`.
   WayOut way_out(const ProjectState& in, const std::set<std::string>& group,
                  const WayDirection& direction);

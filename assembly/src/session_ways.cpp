@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/tolerance.h"
@@ -48,8 +49,8 @@ std::pair<double, double> reach(const Obb& obb, const Pose& X_WI, const Vector3d
 
 }  // namespace
 
-std::vector<WayDirection> Session::Impl::way_directions(const ProjectState& in,
-                                                        const std::set<std::string>& group) {
+std::vector<WayDirection> Session::Impl::mate_directions(const ProjectState& in,
+                                                         const std::set<std::string>& group) {
   std::vector<WayDirection> all;
   for (const auto& [number, mate] : in.mates) {
     if (mate.kind == MateKind::Fix || mate.kind == MateKind::Angle) continue;
@@ -69,16 +70,18 @@ std::vector<WayDirection> Session::Impl::way_directions(const ProjectState& in,
       add_new(all, -run_W, other.text());
     }
   }
-  for (const Instance* placed : in.in_order()) {
-    if (group.contains(placed->name)) continue;
-    // The base: what is grounded, else what was there first.
-    const bool has_ground =
-        std::ranges::any_of(in.instances, [&](const auto& entry) { return entry.second.grounded; });
-    if (has_ground && !placed->grounded) continue;
-    add_new(all, placed->X_WI.rotation() * Vector3d::UnitZ(), placed->name);
-    break;
-  }
   return all;
+}
+
+std::optional<WayDirection> Session::Impl::base_direction(const ProjectState& in,
+                                                          const std::set<std::string>& group) {
+  const bool has_ground =
+      std::ranges::any_of(in.instances, [&](const auto& entry) { return entry.second.grounded; });
+  for (const Instance* placed : in.in_order()) {
+    if (group.contains(placed->name) || (has_ground && !placed->grounded)) continue;
+    return WayDirection{placed->X_WI.rotation() * Vector3d::UnitZ(), placed->name};
+  }
+  return std::nullopt;
 }
 
 WayOut Session::Impl::way_out(const ProjectState& in, const std::set<std::string>& group,
@@ -126,17 +129,25 @@ WayOut Session::Impl::way_out(const ProjectState& in, const std::set<std::string
 
 std::vector<WayOut> Session::ways_out(std::string_view name, const WayQuery& query) {
   const std::string part = instance(name).name;
-  ProjectState in = state();
-  for (const std::string& gone : query.without) {
-    in.instances.erase(gone);
-    std::erase_if(in.mates,
-                  [&](const auto& entry) { return parts_of(entry.second).contains(gone); });
+  std::optional<ProjectState> reduced;
+  if (!query.without.empty()) {
+    reduced = state();
+    for (const std::string& gone : query.without) {
+      reduced->instances.erase(gone);
+      std::erase_if(reduced->mates,
+                    [&](const auto& entry) { return parts_of(entry.second).contains(gone); });
+    }
   }
+  const ProjectState& in = reduced ? *reduced : state();
   DOWEL_EXPECTS(in.find(part) != nullptr);
   const PartNames group = query.with_sub_assembly ? sub_assembly_of(in, part) : unit_of(in, part);
   impl_->bodies.follow(in);
+  std::vector<WayDirection> directions = impl_->mate_directions(in, group);
+  if (const auto up = impl_->base_direction(in, group); up && !query.by_mates_alone) {
+    add_new(directions, up->direction_W, up->along);
+  }
   std::vector<WayOut> ways;
-  for (const WayDirection& direction : impl_->way_directions(in, group)) {
+  for (const WayDirection& direction : directions) {
     ways.push_back(impl_->way_out(in, group, direction));
     if (query.first_free && ways.back().blocked_by.empty()) break;
   }

@@ -47,6 +47,28 @@ TEST_CASE("the straight ways out of a hole are told, and what blocks them") {
   CHECK(shop.session.ways_out("PIN", {.without = {"LID"}})[0].blocked_by.empty());
 }
 
+TEST_CASE("a way in goes along mates, and takes along what hangs on the part") {
+  Workshop shop;
+  const auto ways_in = [&](const char* name, bool with_sub_assembly) {
+    dowel::WayQuery query;
+    query.with_sub_assembly = with_sub_assembly;
+    query.by_mates_alone = true;
+    return shop.session.ways_out(name, query);
+  };
+  shop.place("T/block-40", "B", {0, 0, 60});
+  CHECK(shop.session.ways_out("B").size() == 1);  // up from the base
+  CHECK(ways_in("B", false).empty());
+  shop.place("T/pin-12", "PIN", {-80, 0, 100});
+  REQUIRE_FALSE(shop.insert({"PIN", "pin1"}, {"PLATE", "B1"}, 15.0).refused);
+  CHECK(ways_in("PIN", false).size() == 2);
+  // What stands on B is in its way, unless it comes along.
+  shop.place("T/block-40", "TOP", {0, 0, 150});
+  REQUIRE_FALSE(shop.mate(MateKind::FaceOnFace, {"B", "bottom"}, {"PLATE", "top"}).refused);
+  REQUIRE_FALSE(shop.mate(MateKind::FaceOnFace, {"TOP", "bottom"}, {"B", "top"}).refused);
+  CHECK_FALSE(ways_in("B", false)[0].blocked_by.empty());
+  CHECK(ways_in("B", true)[0].blocked_by.empty());
+}
+
 TEST_CASE("parts are brought in before what would be in their way") {
   Workshop shop;
   // Placed in an order in which they could not be assembled: the lid first.

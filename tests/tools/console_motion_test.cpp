@@ -1,6 +1,8 @@
 // Dragging, snapping, units, sequences and differences at the prompt.
 
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -91,6 +93,45 @@ sequence
   CHECK(has(result, "12 places\n"));
   CHECK(has(result, "base: PLATE\n1. R: by 0 0 "));
   CHECK(has(result, "3. PIN: by 0 0 "));
+}
+
+TEST_CASE("a part without a straight way in is placed, and told by what it is blocked") {
+  const Desk desk;
+  const std::string start = std::string(kStart) + "place T/block-40 as LID at 0 40 100\n";
+  const auto result = desk.script(start + R"(place T/pin-12 as PIN at 0 40 200
+mate insert PIN.pin1 PLATE.C3 offset 15
+place T/riser-60x60x40 as R2 at PLATE.B3
+place T/pin-12 as FREE at 40 40 200
+insert FREE.pin1 into PLATE.C4 offset 15
+)");
+  INFO(result.out << result.err);
+  CHECK(result.exit_code == 0);  // a warning
+  CHECK(has(result, "PIN: mated at 0 40 25, contact with PLATE"));
+  CHECK(has(result,
+            "PIN: no straight way in along its mates\n  along PLATE.C3 (0 0 1): blocked by "
+            "LID after 2"));  // its top is at 55, the lid from 80
+  CHECK(has(result, "  along PLATE.C3 (0 0 -1): blocked by PLATE after 0 of "));
+  CHECK(has(result, "R2: no straight way in along its mates\n"));
+  CHECK(has(result, "FREE: inserted at 40 40 25, contact with PLATE"));
+  CHECK_FALSE(has(result, "FREE: no"));
+
+  const auto json = desk.script(start + R"(place T/pin-12 as PIN at 0 40 200
+insert PIN.pin1 into PLATE.C3 offset 15
+place T/pin-12 as FREE at 40 40 200
+insert FREE.pin1 into PLATE.C4 offset 15
+)",
+                                {"--json"});
+  std::vector<Json> replies;
+  std::istringstream lines(json.out);
+  for (std::string line; std::getline(lines, line);) replies.push_back(Json::parse(line));
+  REQUIRE(replies.size() >= 4);
+  const Json& blocked = replies[replies.size() - 3];
+  CHECK(blocked["way_in"]["free"] == false);
+  CHECK(blocked["way_in"]["ways"][0]["blocked_by"] == Json::array({"LID"}));
+  CHECK(blocked["way_in"]["ways"][0]["free_mm"].get<double>() == Approx(25.0).margin(0.2));
+  CHECK(replies.back()["way_in"]["free"] == true);
+  // Without a mate there is no way in to speak of.
+  CHECK_FALSE(replies[replies.size() - 2].contains("way_in"));
 }
 
 TEST_CASE("a unit goes from project to project, and what differs is told") {

@@ -130,6 +130,7 @@ struct WayQuery {
   std::set<std::string> without;   ///< instances that are as if they were not there
   bool with_sub_assembly = false;  ///< what hangs on the part goes along
   bool first_free = false;         ///< one free way is enough
+  bool by_mates_alone = false;     ///< not up from the base, which is no way into a mate
 };
 
 struct InsertRequest {
