@@ -209,6 +209,10 @@ ProjectFile::ProjectFile(const std::filesystem::path& file, ProjectAccess access
         return SQLite::Database(existing_file(file).string(), SQLite::OPEN_READWRITE,
                                 kBusyTimeout_ms);
       })) {
+  // Before anything is locked: that would write a header into an empty file.
+  if (!looks_like_project(path_)) {
+    throw Error(ErrorCode::SchemaMismatch, title_ + ": is not a dowel project");
+  }
   guarded(title_, [&] {
     const bool is_for_writing = access == ProjectAccess::ReadWrite;
     // Before anything is read: a write-ahead log then needs no file of shared memory.
