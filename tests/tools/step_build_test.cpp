@@ -2,7 +2,9 @@
 
 #include <csignal>
 #include <map>
+#include <set>
 #include <sstream>
+#include <utility>
 #include <variant>
 
 #include <catch2/catch.hpp>
@@ -228,6 +230,53 @@ TEST_CASE("a real assembly becomes a project that the console opens") {
   CHECK(bom.exit_code == 0);
   // Eight nuts.
   CHECK_THAT(bom.out, Catch::Contains("nut") && Catch::Contains("8"));
+}
+
+TEST_CASE("in a real assembly every bolt is found in its nut, bracket and plate") {
+  if (!has_real_files()) return;
+  const Bench bench;
+  const std::string file = (fs::path(DOWEL_SHARED_STEP) / "pythonocc_core/as1-oc-214.stp").string();
+  const std::string project = "projects/as1-oc-214.dowelproj";
+  REQUIRE(
+      bench.dowel({"catalog", "build", file, "-o", "c.db", "--assemblies", "projects"}).exit_code ==
+      0);
+  const Json found =
+      lines_of(bench.dowel({"recognise", "dry-run", "--project", project, "--json"})).at(0);
+  // Pairs of a kind between parts of two sorts: a plate, two brackets, each held by three bolts
+  // with their nuts, and a rod through both with a nut at each end.
+  const auto pairs = [&](const std::string& kind, const std::string& a, const std::string& b) {
+    std::set<std::pair<std::string, std::string>> parts;
+    for (const Json& mate : found["mates"]) {
+      std::string one = mate["moving"];
+      std::string other = mate["fixed"];
+      one.resize(one.find('.'));
+      other.resize(other.find('.'));
+      if (one.rfind(a, 0) != 0) std::swap(one, other);
+      if (mate["kind"] == kind && one.rfind(a, 0) == 0 && other.rfind(b, 0) == 0) {
+        parts.emplace(one, other);
+      }
+    }
+    return parts.size();
+  };
+  CHECK(pairs("align", "bolt", "nut") == 6);
+  CHECK(pairs("align", "bolt", "l-bracket") == 6);
+  CHECK(pairs("align", "bolt", "plate") == 6);
+  CHECK(pairs("align", "rod", "nut") == 2);
+  CHECK(pairs("align", "rod", "l-bracket") == 2);
+  CHECK(pairs("face on face", "l-bracket", "plate") == 2);
+  CHECK(pairs("face on face", "bolt", "l-bracket") == 6);
+
+  const ProgramResult made = bench.dowel({"recognise", "--project", project});
+  CHECK(made.exit_code == 0);
+  const Json mates = lines_of(bench.dowel({"list", "mates", "--project", project, "--json"})).at(0);
+  CHECK(mates["mates"].size() > 24);
+  for (const Json& mate : mates["mates"]) CHECK(mate["off_axis_mm"].get<double>() < 1e-4);
+  // The rod is held by axes alone.
+  const Json rod =
+      lines_of(bench.dowel({"freedoms", "rod_1", "--project", project, "--json"})).at(0);
+  REQUIRE(rod["freedoms"].size() == 2);
+  CHECK(rod["freedoms"][0]["kind"] == "slide");
+  CHECK(rod["freedoms"][1]["kind"] == "turn");
 }
 
 // A minute: run by name or tag.
