@@ -12,6 +12,7 @@
 #include "judged_moves.h"
 #include "object_index.h"
 #include "paper_tables.h"
+#include "project_commands.h"
 #include "report.h"
 #include "rule_checks.h"
 #include "skips.h"
@@ -22,7 +23,7 @@ namespace dowel::bench {
 namespace {
 
 constexpr std::array kStudies{"moves",   "growth", "judged",    "error", "solids",
-                              "objects", "skips",  "stability", "rules"};
+                              "objects", "skips",  "stability", "rules", "project"};
 
 struct Arguments {
   Plan plan;
@@ -124,6 +125,7 @@ Results run_studies(const Arguments& given) {
   take("skips", run_skip_study);
   take("stability", run_stability);
   take("rules", run_rule_study);
+  take("project", run_project_study);
   if (!results.runs.empty()) results.charts["time-per-move"] = time_chart(results);
   if (!results.scale.empty()) results.charts["growth"] = growth_chart(results);
   if (!results.sizes.empty()) results.charts["moving-size"] = size_chart(results);

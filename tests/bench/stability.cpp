@@ -7,9 +7,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "dowel/assembly/mate_solver.h"
 #include "dowel/kernel/mesh_defect.h"
 #include "known_pair.h"
+#include "mate_condition.h"
 #include "methods.h"
 #include "random_geometry.h"
 #include "solids.h"
@@ -106,11 +106,13 @@ bool has_verdicts(const Method& method) {
 class Tables {
  public:
   explicit Tables(const Plan& plan)
-      : methods_(methods_of_tables()), places_(std::max<std::size_t>(plan.poses / 100, 2)) {}
+      : methods_(methods_of_tables()),
+        places_(std::max<std::size_t>(plan.poses / 100, 2)),
+        plan_(plan) {}
 
   std::vector<Table> make() {
-    return {offsets(),        sizes(),        exact_contact(), small_gaps(), slivers(),
-            parallel_edges(), long_motions(), mates(),         refusals()};
+    return {offsets(),        sizes(),        exact_contact(),        small_gaps(), slivers(),
+            parallel_edges(), long_motions(), mate_conditions(plan_), refusals()};
   }
 
  private:
@@ -313,50 +315,6 @@ class Tables {
     return table;
   }
 
-  /// A pin hole each in two parts at the origin, and one more at `apart_mm` along x.
-  static Joint hole_on_hole(double apart_mm, bool holds_height) {
-    Joint joint;
-    joint.a = 0;
-    joint.b = 1;
-    joint.X_AF = joint.X_BG = Pose::from_translation({apart_mm, 0.0, 0.0});
-    joint.holds_tilt = true;
-    joint.holds_slide = {true, true, holds_height};
-    return joint;
-  }
-
-  Table mates() const {
-    Table table{"Nearly singular mates",
-                "A part is mated to another one by two holes this far apart, from random places. "
-                "What the solver says of the second mate, and how far points 100 mm from the "
-                "holes end from where they belong: all that two holes this near can tell.",
-                {"holes apart, mm", "second mate", "largest error, mm"},
-                {}};
-    constexpr std::array kNames{"holds", "redundant", "conflicting", "nearly redundant"};
-    for (const double apart : {100.0, 1.0, 1.0e-2, 1.0e-4, 1.0e-6, 1.0e-9}) {
-      RandomGeometry random(94);
-      double off_mm = 0.0;
-      std::array<std::size_t, 4> said{};
-      for (std::size_t i = 0; i < 5 * places_; ++i) {
-        MateProblem problem;
-        const Pose X_WB = random.pose(1000.0);
-        const Pose nudge = Pose::from_translation(random.point(5.0)) *
-                           Pose::about_axis(Eigen::Vector3d::Zero(), random.direction(), 0.2);
-        problem.bodies = {{X_WB * nudge, false}, {X_WB, true}};
-        problem.mates = {{hole_on_hole(0.0, true)}, {hole_on_hole(apart, false)}};
-        const MateSolution solution = solve_mates(problem);
-        ++said.at(static_cast<std::size_t>(solution.mates[1].status));
-        const Eigen::Vector3d lever(0.0, 100.0, 0.0);
-        off_mm = std::max(off_mm, (solution.X_WB[0] * lever - X_WB * lever).norm());
-      }
-      std::string names;
-      for (std::size_t i = 0; i < said.size(); ++i) {
-        if (said[i] > 0) names += (names.empty() ? "" : ", ") + std::string(kNames.at(i));
-      }
-      table.rows.push_back({text(apart), names, text(off_mm)});
-    }
-    return table;
-  }
-
   Table refusals() const {
     Table table{"Outside the working range",
                 "What dowel says to solids beyond 100 m, open ones, and tolerances below 1e-6 mm.",
@@ -387,6 +345,7 @@ class Tables {
 
   std::vector<Method> methods_;
   std::size_t places_;
+  Plan plan_;
 };
 
 }  // namespace
