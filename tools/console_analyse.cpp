@@ -95,6 +95,26 @@ std::string foolproof_text(const FoolproofAnalysis& analysis) {
   return text;
 }
 
+std::string wrench_text(const WrenchAccess& access) {
+  const std::string what = access.fastener + ": " + access.wrench;
+  if (!access.is_free) return what + " is stopped by " + access.blocked_by;
+  return what + " swings by " + short_number(whole_degrees(access.swing_rad)) + " degrees";
+}
+
+std::string wrenches_text(const std::vector<WrenchAccess>& wrenches, double least_deg) {
+  std::size_t reached = 0;
+  std::string others;
+  for (const WrenchAccess& access : wrenches) {
+    if (access.is_free && whole_degrees(access.swing_rad) >= least_deg) {
+      ++reached;
+    } else {
+      others += "\n  " + wrench_text(access);
+    }
+  }
+  return "wrenches: " + std::to_string(reached) + " of " + std::to_string(wrenches.size()) +
+         " screws and nuts are reached" + others;
+}
+
 std::string analysis_text(const FixtureAnalysis& analysis, const FixtureDesign& design) {
   const FixtureModel& model = analysis.model;
   std::string text = "workpiece " + model.workpiece + ": " +
@@ -134,6 +154,7 @@ std::string analysis_text(const FixtureAnalysis& analysis, const FixtureDesign& 
             " after " + rough(out.free_share * out.lift_mm) + " of " + rough(out.lift_mm) + " mm";
   }
   text += "\n" + foolproof_text(analysis.foolproof);
+  text += "\n" + wrenches_text(analysis.wrenches, design.limit("swing_deg"));
   return text;
 }
 
@@ -204,6 +225,16 @@ Json analysis_json(const FixtureAnalysis& analysis) {
                        {"free_share", analysis.unloading.free_share},
                        {"blocked_by", analysis.unloading.blocked_by}};
   json["foolproof"] = foolproof_json(analysis.foolproof);
+  json["wrenches"] = Json::array();
+  for (const WrenchAccess& access : analysis.wrenches) {
+    json["wrenches"].push_back({{"fastener", access.fastener},
+                                {"wrench", access.wrench},
+                                {"before_workpiece", access.before_workpiece},
+                                {"free", access.is_free},
+                                {"blocked_by", access.blocked_by},
+                                {"lever_mm", access.lever_mm},
+                                {"swing_deg", whole_degrees(access.swing_rad)}});
+  }
   return json;
 }
 

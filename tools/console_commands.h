@@ -47,6 +47,7 @@ Reply run_load(Console& console, Arguments& arguments);
 Reply run_point(Console& console, Arguments& arguments);
 Reply run_accuracy(Console& console, Arguments& arguments);
 Reply run_limit(Console& console, Arguments& arguments);
+Reply run_design(Console& console, Arguments& arguments);
 Reply run_analyse(Console& console, Arguments& arguments);
 Reply run_rules(Console& console, Arguments& arguments);
 Reply run_export(Console& console, Arguments& arguments);

@@ -128,7 +128,16 @@ Reply facts(Arguments& arguments) {
       table.add({fact.table, fact.meaning});
       reply.json["tables"].push_back({{"table", fact.table}, {"meaning", fact.meaning}});
     }
-    reply.text = table.text() + "\n`rules facts TABLE` tells its columns.";
+    Table functions({{"function"}, {"what it gives"}});
+    reply.json["functions"] = Json::array();
+    for (const FunctionDescription& function : describe_functions()) {
+      functions.add({function.name + "(" + function.arguments + ")", function.meaning});
+      reply.json["functions"].push_back({{"function", function.name},
+                                         {"arguments", function.arguments},
+                                         {"meaning", function.meaning}});
+    }
+    reply.text = table.text() + "\n" + functions.text() +
+                 "\n`rules facts TABLE` tells the columns of a table.";
     return reply;
   }
   const std::string name = arguments.word("a table");

@@ -20,6 +20,7 @@ constexpr std::string_view kLocatorError = "locator-error ";
 constexpr std::string_view kLoad = "load ";
 constexpr std::string_view kPoint = "point ";
 constexpr std::string_view kLimit = "limit ";
+constexpr std::string_view kStated = "stated ";
 constexpr std::string_view kOverride = "override ";
 constexpr std::string_view kWaiver = "waiver ";
 
@@ -54,10 +55,10 @@ std::optional<std::string> name_in(const SettingRow& row, std::string_view kind)
   return row.name.substr(kind.size());
 }
 
-/// Rule and subject of a waiver's name: no rule's id has a blank.
-std::pair<std::string, std::string> waiver_key(const std::string& name) {
+/// Rule or quantity, and subject: neither a rule's id nor a quantity's name has a blank.
+std::pair<std::string, std::string> key_with_subject(const std::string& name) {
   const std::size_t blank = name.find(' ');
-  if (blank == std::string::npos) throw Error(ErrorCode::FileMalformed, "a waiver has no subject");
+  if (blank == std::string::npos) throw Error(ErrorCode::FileMalformed, "there is no subject");
   return {name.substr(0, blank), name.substr(blank + 1)};
 }
 
@@ -78,13 +79,19 @@ bool put(FixtureDesign& design, const SettingRow& row, const Json& value) {
   } else if (const auto limit = name_in(row, kLimit)) {
     if (find_limit(*limit) == nullptr) throw Error(ErrorCode::FileMalformed, "an unknown limit");
     design.limits[*limit] = number_from(value);
+  } else if (const auto stated = name_in(row, kStated)) {
+    const auto key = key_with_subject(*stated);
+    if (find_stated_quantity(key.first) == nullptr) {
+      throw Error(ErrorCode::FileMalformed, "an unknown quantity");
+    }
+    design.stated[key] = {number_from(value.at("value")), value.at("reason").get<std::string>()};
   } else if (const auto rule = name_in(row, kOverride)) {
     design.overrides[*rule] = {value.at("severity").get<std::string>(),
                                value.at("reason").get<std::string>()};
   } else if (const auto waived = name_in(row, kWaiver)) {
-    design.waivers[waiver_key(*waived)] = {value.at("reason").get<std::string>(),
-                                           value.at("by").get<std::string>(),
-                                           value.at("digest").get<std::string>()};
+    design.waivers[key_with_subject(*waived)] = {value.at("reason").get<std::string>(),
+                                                 value.at("by").get<std::string>(),
+                                                 value.at("digest").get<std::string>()};
   } else {
     return false;
   }
@@ -113,6 +120,10 @@ std::vector<SettingRow> rows_of(const FixtureDesign& design) {
         row(kPoint, name, {{"at", to_json(point.at)}, {"tolerance_mm", point.tolerance_mm}}));
   }
   for (const auto& [name, value] : design.limits) rows.push_back(row(kLimit, name, value));
+  for (const auto& [key, stated] : design.stated) {
+    rows.push_back(row(kStated, key.first + " " + key.second,
+                       {{"value", stated.value}, {"reason", stated.reason}}));
+  }
   for (const auto& [rule, change] : design.overrides) {
     rows.push_back(
         row(kOverride, rule, {{"severity", change.severity}, {"reason", change.reason}}));
@@ -142,7 +153,9 @@ bool take_row(FixtureDesign& design, const SettingRow& row) {
     return name && map.erase(*name) > 0;
   };
   if (const auto waived = name_in(row, kWaiver))
-    return design.waivers.erase(waiver_key(*waived)) > 0;
+    return design.waivers.erase(key_with_subject(*waived)) > 0;
+  if (const auto stated = name_in(row, kStated))
+    return design.stated.erase(key_with_subject(*stated)) > 0;
   return take(design.roles, kRole) || take(design.clamp_forces_N, kClampForce) ||
          take(design.locator_errors_mm, kLocatorError) || take(design.loads, kLoad) ||
          take(design.points, kPoint) || take(design.limits, kLimit) ||

@@ -15,6 +15,7 @@
 
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
+#include "fact_call.h"
 
 namespace dowel {
 namespace {
@@ -277,14 +278,19 @@ bool is_blank(const char* text) {
 
 struct FactDatabase::Impl {
   RowsOf rows;
+  Call call;
+  std::vector<std::unique_ptr<FunctionEntry>> functions;
   std::vector<std::unique_ptr<FactModule>> modules;
   std::exception_ptr thrown;
   sqlite3* database = nullptr;
   FactReads* reads = nullptr;  ///< of the query that is being prepared
-  std::string refused;         ///< what the authorizer did not let pass
+  std::set<std::size_t>* calls = nullptr;
+  std::string refused;  ///< what the authorizer did not let pass
   int looks = 0;
 
   int authorize(int action, const char* first, const char* second);
+  void add_functions();
+  void note_call(std::string_view name);
 };
 
 namespace {
@@ -323,6 +329,7 @@ int FactDatabase::Impl::authorize(int action, const char* first, const char* sec
 struct FactDatabase::Query::Impl {
   sqlite3_stmt* statement = nullptr;
   FactReads reads;
+  std::set<std::size_t> calls;
 };
 
 FactDatabase::Query::Query(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -333,8 +340,32 @@ const FactReads& FactDatabase::Query::reads() const {
   return impl_->reads;
 }
 
-FactDatabase::FactDatabase(RowsOf rows) : impl_(std::make_unique<Impl>()) {
+const std::set<std::size_t>& FactDatabase::Query::calls() const {
+  return impl_->calls;
+}
+
+void FactDatabase::Impl::add_functions() {
+  for (std::size_t i = 0; i < fact_functions().size(); ++i) {
+    const FactFunction& function = fact_functions()[i];
+    auto& entry = functions.emplace_back(std::make_unique<FunctionEntry>());
+    *entry = {&call, i, &thrown};
+    const int code = sqlite3_create_function_v2(database, function.name, function.argument_count,
+                                                SQLITE_UTF8 | SQLITE_DETERMINISTIC, entry.get(),
+                                                call_function, nullptr, nullptr, nullptr);
+    DOWEL_EXPECTS(code == SQLITE_OK);
+  }
+}
+
+/// Of the functions of one name that take other numbers of arguments (`rank`), all count.
+void FactDatabase::Impl::note_call(std::string_view name) {
+  for (std::size_t i = 0; i < fact_functions().size(); ++i) {
+    if (calls != nullptr && name == fact_functions()[i].name) calls->insert(i);
+  }
+}
+
+FactDatabase::FactDatabase(RowsOf rows, Call call) : impl_(std::make_unique<Impl>()) {
   impl_->rows = std::move(rows);
+  impl_->call = std::move(call);
   if (sqlite3_open_v2(":memory:", &impl_->database, SQLITE_OPEN_READWRITE, nullptr) != SQLITE_OK) {
     sqlite3_close(impl_->database);
     throw std::bad_alloc();
@@ -348,6 +379,7 @@ FactDatabase::FactDatabase(RowsOf rows) : impl_(std::make_unique<Impl>()) {
     sqlite3_create_module_v2(impl_->database, fact_tables()[i].name, &kFactModule, module.get(),
                              nullptr);
   }
+  impl_->add_functions();
   // A table is made when it is first named, which takes more than the authorizer lets a rule do.
   for (const FactTable& table : fact_tables()) {
     const std::string sql = std::string("SELECT 1 FROM \"") + table.name + "\"";
@@ -366,6 +398,7 @@ FactDatabase::FactDatabase(RowsOf rows) : impl_(std::make_unique<Impl>()) {
       [](void* impl, int action, const char* first, const char* second, const char*, const char*) {
         auto* const self = static_cast<Impl*>(impl);
         if (action == SQLITE_FUNCTION) {
+          if (second != nullptr) self->note_call(second);
           return second != nullptr && !is_refused(second)
                      ? SQLITE_OK
                      : self->authorize(action, second, nullptr);
@@ -386,12 +419,14 @@ FactDatabase::~FactDatabase() {
 std::unique_ptr<FactDatabase::Query> FactDatabase::prepare(const std::string& sql) {
   auto made = std::make_unique<Query::Impl>();
   impl_->reads = &made->reads;
+  impl_->calls = &made->calls;
   impl_->refused.clear();
   impl_->looks = 0;
   const char* tail = nullptr;
   const int code = sqlite3_prepare_v3(impl_->database, sql.c_str(), static_cast<int>(sql.size()),
                                       SQLITE_PREPARE_PERSISTENT, &made->statement, &tail);
   impl_->reads = nullptr;
+  impl_->calls = nullptr;
   if (code != SQLITE_OK) {
     const int offset = sqlite3_error_offset(impl_->database);
     const std::string message =

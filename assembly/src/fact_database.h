@@ -8,9 +8,11 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "fact_function.h"
 #include "fact_table.h"
 
 namespace dowel {
@@ -32,15 +34,18 @@ struct FactQueryError {
 using FactReads = std::map<std::size_t, std::set<std::size_t>>;
 
 /// An in-memory database in which each fact table is a virtual table, filled by `rows` when a query
-/// first reads it. Queries may read the tables and call SQLite's functions that depend on their
-/// arguments alone; SQLite's authorizer refuses all else, and a query that takes too many steps is
-/// broken off.
+/// first reads it. Queries may read the tables, call the functions of `fact_functions()` and those
+/// of SQLite that depend on their arguments alone; SQLite's authorizer refuses all else, and a
+/// query that takes too many steps is broken off.
 class FactDatabase {
  public:
   /// Index of the table in `fact_tables()`; the reference holds until the facts change.
   using RowsOf = std::function<const FactRows&(std::size_t table)>;
 
-  explicit FactDatabase(RowsOf rows);
+  /// Index of the function in `fact_functions()`.
+  using Call = std::function<FactValue(std::size_t function, std::span<const FactValue>)>;
+
+  FactDatabase(RowsOf rows, Call call);
   ~FactDatabase();
   FactDatabase(const FactDatabase&) = delete;
   FactDatabase& operator=(const FactDatabase&) = delete;
@@ -53,6 +58,8 @@ class FactDatabase {
     Query& operator=(const Query&) = delete;
     /// What it reads, by the authorizer.
     const FactReads& reads() const;
+    /// What it calls of `fact_functions()`.
+    const std::set<std::size_t>& calls() const;
 
    private:
     friend class FactDatabase;

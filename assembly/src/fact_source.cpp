@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "dowel/assembly/fit.h"
+#include "dowel/kernel/tolerance.h"
 #include "fixture_result.h"
 #include "instance_boxes.h"
 
@@ -66,6 +67,8 @@ unsigned FactSource::update() {
   state_ = now;
   // Features of elements are pointed to, and an element may be another after a removal.
   axes_.reset();
+  slots_.reset();
+  wrenches_.reset();
   holdings_.reset();
   fixtures_.reset();
   return changed;
@@ -91,7 +94,8 @@ void FactSource::update_pairs(Pairs& pairs, double gap_mm, const std::vector<Tou
         std::ranges::binary_search(*but, std::tie(a->name, b->name), {}, names_of)) {
       continue;
     }
-    const PairVerdict pair = bodies_.pair(a->name, b->name, gap_mm);
+    PairVerdict pair = bodies_.pair(a->name, b->name, gap_mm);
+    if (but != nullptr) pair = nearest(a->name, b->name, pair);
     if (pair.verdict != Verdict::Clear) pairs.touches->push_back({a->name, b->name, pair});
   }
   std::ranges::sort(*pairs.touches, {}, names_of);
@@ -117,6 +121,15 @@ const std::vector<AxisPair>& FactSource::axes() {
   return *axes_;
 }
 
+const std::vector<SlotPair>& FactSource::slots() {
+  if (!slots_) {
+    slots_ = slot_pairs(
+        state_, [this](const Instance& instance) -> const Element& { return element(instance); },
+        [this](const std::string& name) { return solid(name); });
+  }
+  return *slots_;
+}
+
 const std::vector<Holding>& FactSource::holdings() {
   if (holdings_) return *holdings_;
   std::set<std::tuple<std::string, std::string, std::string>> found;
@@ -125,10 +138,12 @@ const std::vector<Holding>& FactSource::holdings() {
     found.emplace(b, a, kind);
   };
   std::set<std::string> screws;
+  std::set<std::string> threaded;
   for (const AxisPair& pair : axes()) {
     if (!pair.is_thread) continue;
     hold(pair.shaft_instance, pair.hole_instance, "thread");
     screws.insert(pair.shaft_instance);
+    threaded.insert({pair.shaft_instance, pair.hole_instance});
   }
   for (const AxisPair& pair : axes()) {
     if (pair.is_thread) continue;
@@ -136,6 +151,17 @@ const std::vector<Holding>& FactSource::holdings() {
     if (screws.contains(pair.shaft_instance)) {
       hold(pair.shaft_instance, pair.hole_instance, "screw");
     }
+  }
+  for (const SlotPair& pair : slots()) {
+    // Pulled up by its screw or nut, its foot is under the throat.
+    if (threaded.contains(pair.instance) && pair.shoulder_mm &&
+        *pair.shoulder_mm <= std::max(kCoaxial_mm, state_.tolerance_mm)) {
+      hold(pair.instance, pair.slot_instance, "tee");
+    }
+  }
+  for (const auto& [key, part] : keyed_parts(state_, slots())) {
+    // A key is caught between two slots; it holds neither of the parts.
+    found.emplace(key, part, "key");
   }
   for (const auto& [number, mate] : state_.mates) {
     if (mate.kind == MateKind::Fix) hold(mate.moving.instance, mate.fixed.instance, "fix");
@@ -183,6 +209,40 @@ const std::vector<ContactPatch>& FactSource::shared_planes(const Touch& touch) {
       a, b, state_.tolerance_mm,
       plane_patches(*solid(a.element), a.X_WI, *solid(b.element), b.X_WI, state_.tolerance_mm)};
   return known.patches;
+}
+
+PairVerdict FactSource::pair(const std::string& a, const std::string& b, double tolerance_mm) {
+  bodies_.follow(state_);
+  const auto [first, second] = std::minmax(a, b);
+  return nearest(first, second, bodies_.pair(first, second, tolerance_mm));
+}
+
+/// A contact at a wide tolerance is told by the first place that is near enough. Halved until it is
+/// as narrow as the gap, it tells the least.
+PairVerdict FactSource::nearest(const std::string& a, const std::string& b, PairVerdict pair) {
+  constexpr double kGapStep_mm = 1.0e-3;
+  double least_mm = 0.0;
+  while (pair.verdict == Verdict::Contact && pair.gap_mm - least_mm > kGapStep_mm) {
+    const double tolerance_mm = 0.5 * (least_mm + pair.gap_mm);
+    const PairVerdict closer = bodies_.pair(a, b, tolerance_mm);
+    if (closer.verdict == Verdict::Clear) {
+      least_mm = tolerance_mm;
+    } else {
+      pair.gap_mm = closer.verdict == Verdict::Contact ? closer.gap_mm : 0.0;
+      pair.witness_W = closer.witness_W;
+    }
+  }
+  return pair;
+}
+
+const std::vector<WrenchAccess>& FactSource::wrenches() {
+  if (!wrenches_) wrenches_ = wrench_bench_.access(*this);
+  return *wrenches_;
+}
+
+std::vector<std::string> FactSource::in_way_of_cutter(const CriticalPoint& point,
+                                                      double diameter_mm, double length_mm) {
+  return wrench_bench_.in_way_of_cutter(*this, point, diameter_mm, length_mm);
 }
 
 const UnloadAnalysis& FactSource::unloading(const FixtureModel& model) {

@@ -20,6 +20,8 @@
 #include "fixture_result.h"
 #include "foolproof.h"
 #include "placed_bodies.h"
+#include "slot_pair.h"
+#include "wrench_access.h"
 
 namespace dowel {
 
@@ -27,7 +29,7 @@ namespace dowel {
 struct Holding {
   std::string held;
   std::string by;
-  std::string kind;  ///< "thread", "screw", "press", "clamp", "fix"
+  std::string kind;  ///< "thread", "screw", "press", "clamp", "fix", "tee", "key"
 };
 
 class FactSource {
@@ -41,6 +43,9 @@ class FactSource {
   const ProjectState& state() const { return state_; }
   const Element& element(const Instance& instance) { return session_.element(instance.element); }
   std::shared_ptr<const FacetedSolid> solid(const std::string& element);
+  std::shared_ptr<const CollisionElement> shape(const std::string& element) {
+    return bodies_.shape(element);
+  }
   Role role(const Instance& instance) { return fixture_role(state_, instance, element(instance)); }
 
   /// Pairs that are not clear at the project's tolerance, by name.
@@ -48,6 +53,7 @@ class FactSource {
   /// Pairs that do not touch and are nearer than `gap_mm`, by name.
   const std::vector<Touch>& nearer_than(double gap_mm);
   const std::vector<AxisPair>& axes();
+  const std::vector<SlotPair>& slots();
   const std::vector<Holding>& holdings();
   /// One for each workpiece.
   const std::vector<FixtureModel>& fixtures();
@@ -60,6 +66,13 @@ class FactSource {
   const UnloadAnalysis& unloading(const FixtureModel& model);
   /// Whether the workpiece seats in a wrong orientation.
   const FoolproofAnalysis& foolproof(const FixtureModel& model);
+  /// Of all screws and nuts that have a hexagon, by name.
+  const std::vector<WrenchAccess>& wrenches();
+  /// Parts but the workpiece that a cutter is in, which comes down to a critical point.
+  std::vector<std::string> in_way_of_cutter(const CriticalPoint& point, double diameter_mm,
+                                            double length_mm);
+  /// The verdict of two placed parts at a tolerance, whose gap is the least to a micrometre.
+  PairVerdict pair(const std::string& a, const std::string& b, double tolerance_mm);
 
  private:
   /// Pairs that are no farther apart than a gap, and the state that they are of.
@@ -70,6 +83,7 @@ class FactSource {
   };
   /// Asks anew about the parts that changed alone; `but` are left out.
   void update_pairs(Pairs& pairs, double gap_mm, const std::vector<Touch>* but);
+  PairVerdict nearest(const std::string& a, const std::string& b, PairVerdict pair);
 
   Session& session_;
   ProjectState state_;
@@ -97,7 +111,10 @@ class FactSource {
   std::map<std::string, std::vector<LintFinding>> data_faults_;
   Pairs touching_;
   Pairs near_;
+  WrenchBench wrench_bench_;
+  std::optional<std::vector<WrenchAccess>> wrenches_;
   std::optional<std::vector<AxisPair>> axes_;
+  std::optional<std::vector<SlotPair>> slots_;
   std::optional<std::vector<Holding>> holdings_;
   std::optional<std::vector<FixtureModel>> fixtures_;
 };

@@ -48,6 +48,9 @@ std::vector<FactTable> pair_facts();
 std::vector<FactTable> axis_facts();
 std::vector<FactTable> locating_facts();
 std::vector<FactTable> design_facts();
+std::vector<FactTable> stated_facts();
+std::vector<FactTable> slot_facts();
+std::vector<FactTable> access_facts();
 
 /// Truth as SQL has it.
 inline FactValue truth(bool value) {

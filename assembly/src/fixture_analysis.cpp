@@ -37,7 +37,8 @@ std::vector<Eigen::Vector3d> ways_out(const FixtureModel& model) {
   return candidates;
 }
 
-/// What is taken off before the workpiece comes out: clamps, and fasteners that touch one.
+}  // namespace
+
 std::set<std::string> taken_off(const ProjectState& state, Session& session,
                                 const std::vector<Touch>& touches) {
   std::set<std::string> clamps;
@@ -60,8 +61,6 @@ std::set<std::string> taken_off(const ProjectState& state, Session& session,
   }
   return off;
 }
-
-}  // namespace
 
 Eigen::MatrixXd all_wrenches(const FixtureModel& model) {
   std::vector<LocatingPoint> points = model.locators;
@@ -224,6 +223,7 @@ FixtureAnalysis analyse_fixture(Session& session) {
                                  : support_margin_mm(supports, model.center_of_mass.head<2>());
   result.unloading = source.unloading(model);
   result.foolproof = source.foolproof(model);
+  result.wrenches = source.wrenches();
   return result;
 }
 

@@ -58,36 +58,34 @@ std::vector<Eigen::Vector3d> points_of(const WorkpieceContact& contact, double l
 /// Play of a pin in the hole that it locates: beyond, it is in the hole for another reason.
 constexpr double kMostPlay_mm = 0.2;
 
-/// A pin of a locator in a hole of the workpiece: a point for each direction in which it stops it.
-struct PinPlace {
-  Eigen::Vector3d at_W;
-  Eigen::Vector3d axis_W;
-  double play_mm = 0.0;
-  std::vector<Eigen::Vector3d> normals_W;
-};
-
 /// Flattened pins give way along the shorter side of their box, which is as long across it as their
 /// diameter. Recognition sees no shaft in them but their shank.
 bool is_diamond(const Element& element) {
   return element.name.find("diamond") != std::string::npos;
 }
 
-std::optional<PinPlace> pin_in(const Instance& pin, const Element& element, const Feature& shaft,
-                               const Instance& workpiece, const Feature& hole) {
+std::optional<WorkpiecePin> pin_in(const Instance& pin, const Element& element,
+                                   const Feature& shaft, const Instance& workpiece,
+                                   const Feature& hole) {
   const Eigen::Vector3d hole_axis_W = workpiece.X_WI.rotation() * hole.direction;
   const Eigen::Vector3d axis_W = pin.X_WI.rotation() * shaft.direction;
   const Eigen::Vector3d opening_W = workpiece.X_WI * hole.origin;
   const Eigen::Vector3d to_pin = pin.X_WI * shaft.origin - opening_W;
   const Eigen::Vector3d across = to_pin - hole_axis_W.dot(to_pin) * hole_axis_W;
   if (hole_axis_W.cross(axis_W).norm() > kCoaxial_rad) return std::nullopt;
-  PinPlace place{opening_W, hole_axis_W, 0.0, {}};
+  WorkpiecePin place;
+  place.instance = pin.name;
+  place.shaft = shaft.name;
+  place.hole = hole.name;
+  place.is_diamond = is_diamond(element);
+  place.axis = hole_axis_W;
   double diameter_mm = shaft.diameter_mm;
   const Eigen::Vector3d x_W = hole_axis_W.unitOrthogonal();
-  place.normals_W = {x_W, hole_axis_W.cross(x_W)};
+  place.normals = {x_W, hole_axis_W.cross(x_W)};
   double from_mm = hole_axis_W.dot(to_pin);
   double to_mm =
       hole_axis_W.dot(pin.X_WI * (shaft.origin + shaft.depth_mm * shaft.direction) - opening_W);
-  if (is_diamond(element)) {
+  if (place.is_diamond) {
     int widest = -1;
     for (int i = 0; i < 3; ++i) {
       const bool is_across =
@@ -98,7 +96,7 @@ std::optional<PinPlace> pin_in(const Instance& pin, const Element& element, cons
       }
     }
     diameter_mm = 2.0 * element.obb.half_extents_mm[widest];
-    place.normals_W = {pin.X_WI.rotation() * element.obb.axes.col(widest)};
+    place.normals = {pin.X_WI.rotation() * element.obb.axes.col(widest)};
     const double middle_mm = hole_axis_W.dot(pin.X_WI * element.obb.center - opening_W);
     const double half_mm = (element.obb.axes.transpose() * shaft.direction)
                                .cwiseAbs()
@@ -106,30 +104,33 @@ std::optional<PinPlace> pin_in(const Instance& pin, const Element& element, cons
     from_mm = middle_mm - half_mm;
     to_mm = middle_mm + half_mm;
   }
-  place.play_mm = hole.diameter_mm - diameter_mm;
+  const double play_mm = hole.diameter_mm - diameter_mm;
   const double begin_mm = std::max(0.0, std::min(from_mm, to_mm));
   const double end_mm = std::min(hole.depth_mm, std::max(from_mm, to_mm));
-  if (place.play_mm < 0.0 || place.play_mm > kMostPlay_mm || end_mm <= begin_mm ||
-      across.norm() > kCoaxial_mm + 0.5 * place.play_mm) {
+  if (play_mm < 0.0 || play_mm > kMostPlay_mm || end_mm <= begin_mm ||
+      across.norm() > kCoaxial_mm + 0.5 * play_mm) {
     return std::nullopt;
   }
-  place.at_W = opening_W + 0.5 * (begin_mm + end_mm) * hole_axis_W;
+  place.hole_mm = hole.diameter_mm;
+  place.pin_mm = diameter_mm;
+  place.length_mm = std::abs(to_mm - from_mm);
+  place.engagement_mm = end_mm - begin_mm;
+  place.at = opening_W + 0.5 * (begin_mm + end_mm) * hole_axis_W;
   return place;
 }
 
 /// The pins of one locator, each in the first hole of the workpiece that it goes with.
-std::vector<PinPlace> pins_of(const Instance& locator, const Element& element,
-                              const Instance& workpiece, const Element& work) {
-  std::vector<PinPlace> places;
+std::vector<WorkpiecePin> pins_of(const Instance& locator, const Element& element,
+                                  const Instance& workpiece, const Element& work) {
+  std::vector<WorkpiecePin> places;
   for (const Feature& shaft : element.features) {
     if (shaft.kind != FeatureKind::Shaft) continue;
     for (const Feature& hole : work.features) {
       if (hole.kind != FeatureKind::Hole) continue;
       const auto place = pin_in(locator, element, shaft, workpiece, hole);
-      const bool is_known =
-          place && std::ranges::any_of(places, [&](const PinPlace& other) {
-            return (other.at_W - place->at_W).cross(other.axis_W).norm() < kMostPlay_mm;
-          });
+      const bool is_known = place && std::ranges::any_of(places, [&](const WorkpiecePin& other) {
+                              return (other.at - place->at).cross(other.axis).norm() < kMostPlay_mm;
+                            });
       if (place && !is_known) places.push_back(*place);
     }
   }
@@ -168,14 +169,14 @@ FixtureModel fixture_model(const FixtureInput& input, const Instance& workpiece)
   model.mass_kg = element.mass_kg();
   model.center_of_mass = workpiece.X_WI * element.center_of_mass;
   const auto solid = input.solid(workpiece.element);
-  std::map<std::string, std::vector<PinPlace>> pins;
   for (const auto& [name, instance] : input.state.instances) {
     const Element& other = input.element(instance.element);
     if (name == workpiece.name || fixture_role(input.state, instance, other) != Role::Locator) {
       continue;
     }
-    auto places = pins_of(instance, other, workpiece, element);
-    if (!places.empty()) pins.emplace(name, std::move(places));
+    for (WorkpiecePin& pin : pins_of(instance, other, workpiece, element)) {
+      model.pins.push_back(std::move(pin));
+    }
   }
   for (const Touch& touch : input.touches) {
     if (touch.instance != workpiece.name && touch.with != workpiece.name) continue;
@@ -187,7 +188,8 @@ FixtureModel fixture_model(const FixtureInput& input, const Instance& workpiece)
       for (ContactPatch& patch : patches) patch.normal_W = -patch.normal_W;
     }
     // The wall of a hole touches its pin somewhere; the pin stops it all around.
-    if (patches.empty() && !pins.contains(name)) {
+    if (patches.empty() &&
+        std::ranges::find(model.pins, name, &WorkpiecePin::instance) == model.pins.end()) {
       patches = contact_patches(*input.solid(other.element), other.X_WI, *solid, workpiece.X_WI,
                                 input.state.tolerance_mm, touch.pair.witness_W);
     }
@@ -210,12 +212,10 @@ FixtureModel fixture_model(const FixtureInput& input, const Instance& workpiece)
       model.locators.push_back({contact.instance, point, contact.normal, error_mm, false});
     }
   }
-  for (const auto& [name, places] : pins) {
-    for (const PinPlace& place : places) {
-      const double error_mm = error_of(name) + 0.5 * place.play_mm;
-      for (const Eigen::Vector3d& normal_W : place.normals_W) {
-        model.locators.push_back({name, place.at_W, normal_W, error_mm, true});
-      }
+  for (const WorkpiecePin& pin : model.pins) {
+    const double error_mm = error_of(pin.instance) + 0.5 * (pin.hole_mm - pin.pin_mm);
+    for (const Eigen::Vector3d& normal : pin.normals) {
+      model.locators.push_back({pin.instance, pin.at, normal, error_mm, true});
     }
   }
   return model;

@@ -3,6 +3,7 @@
 // Steps of the fixture analysis that rules ask for one by one. Internal to both.
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,10 @@ namespace dowel {
 
 class FactSource;
 class PlacedBodies;
+
+/// What is taken off before the workpiece comes out: clamps, and fasteners that touch one.
+std::set<std::string> taken_off(const ProjectState& state, Session& session,
+                                const std::vector<Touch>& touches);
 
 /// Columns: a unit force at each locating point and each clamp contact.
 Eigen::MatrixXd all_wrenches(const FixtureModel& model);

@@ -5,6 +5,7 @@
 
 #include "dowel/assembly/fit.h"
 #include "dowel/catalog/metric_thread.h"
+#include "dowel/kernel/tolerance.h"
 #include "fact_source.h"
 
 namespace dowel {
@@ -113,6 +114,51 @@ FactRows fastenings(FactSource& source) {
   return rows;
 }
 
+/// Whether something along `axis_W` is drilled square to a plate that lies flat.
+bool is_upright(const Eigen::Vector3d& axis_W) {
+  return std::abs(axis_W.z()) > 1.0 - kCoaxial_rad;
+}
+
+/// A row for each upright through hole of a part, with the hole of the plate that is nearest.
+void add_plate_holes(FactSource& source, const Instance& part, const Instance& plate,
+                     FactRows& rows) {
+  const Role role = source.role(part);
+  if (role != Role::Riser && role != Role::Locator && role != Role::Support) return;
+  for (const Feature& bore : source.element(part).features) {
+    if (bore.kind != FeatureKind::Hole || !bore.through ||
+        !is_upright(part.X_WI.rotation() * bore.direction)) {
+      continue;
+    }
+    const Eigen::Vector3d at_W = part.X_WI * bore.origin;
+    const Feature* nearest = nullptr;
+    double off_mm = 0.0;
+    for (const Feature& hole : source.element(plate).features) {
+      if (hole.kind != FeatureKind::Hole || !is_upright(plate.X_WI.rotation() * hole.direction)) {
+        continue;
+      }
+      const double to_hole_mm = (plate.X_WI * hole.origin - at_W).head<2>().norm();
+      if (nearest != nullptr && to_hole_mm >= off_mm) continue;
+      nearest = &hole;
+      off_mm = to_hole_mm;
+    }
+    if (nearest == nullptr) continue;
+    rows.push_back({part.name, bore.name, bore.diameter_mm, plate.name, nearest->name, off_mm});
+  }
+}
+
+FactRows plate_holes(FactSource& source) {
+  FactRows rows;
+  for (const Touch& touch : source.touches()) {
+    if (touch.pair.verdict != Verdict::Contact) continue;
+    const Instance& a = *source.state().find(touch.instance);
+    const Instance& b = *source.state().find(touch.with);
+    if (source.role(a) == Role::BasePlate) add_plate_holes(source, b, a, rows);
+    if (source.role(b) == Role::BasePlate) add_plate_holes(source, a, b, rows);
+  }
+  std::ranges::sort(rows);
+  return rows;
+}
+
 }  // namespace
 
 std::vector<FactTable> pair_facts() {
@@ -122,7 +168,7 @@ std::vector<FactTable> pair_facts() {
        "gap_workpiece_mm.",
        {{"a", "instance, first by name"},
         {"b", "instance"},
-        {"gap_mm", "their distance where it was found least"},
+        {"gap_mm", "their least distance, to a micrometre"},
         {"x_mm", "there"},
         {"y_mm", ""},
         {"z_mm", ""}},
@@ -150,6 +196,16 @@ std::vector<FactTable> pair_facts() {
         {"bound_mm", "how far facets may be off the exact faces; 0 where these decided"}},
        kFromParts | kFromTolerance,
        interferences},
+      {"plate_holes",
+       "Upright through holes of risers, locators and supports that stand on a base plate.",
+       {{"instance", "part"},
+        {"hole", "its feature"},
+        {"diameter_mm", "of that, at its narrowest"},
+        {"plate", "instance"},
+        {"plate_hole", "its hole that is nearest"},
+        {"off_mm", "from axis to axis, seen from above"}},
+       kFromParts | kFromDesign | kFromTolerance,
+       plate_holes},
       {"seats",
        "Where touching pairs touch: a row for each plane that they share.",
        {{"a", "instance, first by name"},
@@ -170,10 +226,11 @@ std::vector<FactTable> axis_facts() {
   return {
       {"fastenings",
        "Joints that hold: a row for either side. Threads, screws through bores and slots, press "
-       "fits, clamps on the workpiece, mates of kind fix.",
+       "fits, clamps on the workpiece, mates of kind fix, T-nuts and T-bolts that are pulled up in "
+       "their slot. A key that is caught between two slots is held by both, and holds neither.",
        {{"instance", "what is held"},
         {"holder", "what holds it"},
-        {"kind", "thread, screw, press, clamp or fix"}},
+        {"kind", "thread, screw, press, clamp, fix, tee or key"}},
        kFromParts | kFromMates | kFromDesign | kFromTolerance,
        fastenings},
       {"fits",

@@ -110,6 +110,7 @@ struct RuleChecker::Impl {
   struct Prepared {
     std::unique_ptr<FactDatabase::Query> query;
     std::map<std::size_t, std::uint64_t> versions;  ///< of the facts that the last run read
+    std::map<std::size_t, std::uint64_t> calls;     ///< versions of the functions that it calls
     bool has_run = false;
     RuleResult result;
   };
@@ -118,7 +119,11 @@ struct RuleChecker::Impl {
       : source(session),
         rules(given),
         facts(fact_tables().size()),
-        database([this](std::size_t table) -> const FactRows& { return rows(table); }),
+        function_versions(fact_functions().size()),
+        database([this](std::size_t table) -> const FactRows& { return rows(table); },
+                 [this](std::size_t function, std::span<const FactValue> arguments) {
+                   return fact_functions()[function].call(source, arguments);
+                 }),
         prepared(given.rules.size()) {}
 
   /// Rows of a table, made or made anew where they may have changed.
@@ -169,6 +174,11 @@ struct RuleChecker::Impl {
   bool must_run(Prepared& rule) {
     if (!rule.has_run) return true;
     if (rule.query == nullptr) return false;  // broken for good
+    if (std::ranges::any_of(rule.calls, [&](const auto& call) {
+          return function_versions[call.first] != call.second;
+        })) {
+      return true;
+    }
     try {
       return std::ranges::any_of(rule.query->reads(), [&](const auto& read) {
         return version(read.first, read.second) != rule.versions.at(read.first);
@@ -184,6 +194,7 @@ struct RuleChecker::Impl {
   FactSource source;
   const RuleSet& rules;
   std::vector<Facts> facts;
+  std::vector<std::uint64_t> function_versions;  ///< times that what they reckon with changed
   FactDatabase database;
   std::vector<Prepared> prepared;
   std::size_t ran = 0;
@@ -195,6 +206,7 @@ void RuleChecker::Impl::run(const Rule& rule, Prepared& prepared_rule) {
   prepared_rule.has_run = true;
   RuleResult& result = prepared_rule.result;
   prepared_rule.versions.clear();
+  prepared_rule.calls.clear();
   result = {};
   result.rule = rule;
   try {
@@ -202,6 +214,10 @@ void RuleChecker::Impl::run(const Rule& rule, Prepared& prepared_rule) {
     for (const auto& [table, columns] : prepared_rule.query->reads()) {
       result.facts.emplace_back(fact_tables()[table].name);
       prepared_rule.versions[table] = version(table, columns);
+    }
+    for (const std::size_t function : prepared_rule.query->calls()) {
+      result.facts.emplace_back(std::string(fact_functions()[function].name) + "()");
+      prepared_rule.calls[function] = function_versions[function];
     }
     result.findings = findings_of(rule, database.run(*prepared_rule.query));
   } catch (const FactQueryError& error) {
@@ -249,6 +265,9 @@ RuleReport RuleChecker::check() {
   const unsigned changed = self.source.update();
   for (std::size_t i = 0; i < self.facts.size(); ++i) {
     if ((fact_tables()[i].inputs & changed) != 0) self.facts[i].is_stale = true;
+  }
+  for (std::size_t i = 0; i < self.function_versions.size(); ++i) {
+    if ((fact_functions()[i].inputs & changed) != 0) ++self.function_versions[i];
   }
   self.ran = 0;
   RuleReport report;
@@ -347,6 +366,14 @@ std::vector<FactDescription> describe_facts() {
     for (const FactColumn& column : table.columns) {
       description.columns.emplace_back(column.name, column.meaning);
     }
+  }
+  return descriptions;
+}
+
+std::vector<FunctionDescription> describe_functions() {
+  std::vector<FunctionDescription> descriptions;
+  for (const FactFunction& function : fact_functions()) {
+    descriptions.push_back({function.name, function.arguments, function.meaning});
   }
   return descriptions;
 }

@@ -22,6 +22,8 @@ FixtureDesign full_design() {
   design.loads["CUT"] = {{1, -2, 1e-17}, {0.1, 0.2, 0.3}, {7, 8, 9}};
   design.points["P"] = {{1, 2, 3}, 0.05};
   design.limits["friction"] = 0.2;
+  design.stated[{"stroke_mm", "CLAMP"}] = {12.5, "maker's \"sheet\""};
+  design.stated[{"machined", "WORK.bottom"}] = {1.0, "drawing"};
   design.overrides["LOC-04"] = {"warning", "a \"study\"\nof two lines"};
   design.waivers[{"COL-01", "REST1 WORK"}] = {"agreed", "somebody", "0123"};
   return design;
@@ -52,10 +54,13 @@ TEST_CASE("a part that is removed takes its role and force with it") {
   const auto session = testing::sound_fixture().session();
   FixtureDesign design = session->state().design;
   design.roles["CLAMP"] = dowel::Role::Clamp;
+  design.stated[{"stroke_mm", "CLAMP"}] = {12.5, "sheet"};
+  design.stated[{"machined", "CLAMP.bottom"}] = {1.0, "drawing"};
   session->set_design(design, "role");
   session->remove("CLAMP", "remove");
   CHECK(session->state().design.clamp_forces_N.empty());
   CHECK(session->state().design.roles.empty());
+  CHECK(session->state().design.stated.empty());
   session->undo(1);
   CHECK(session->state().design == design);
 }
@@ -66,7 +71,10 @@ TEST_CASE("a design in a file that makes no sense is refused by its row", "[faul
         std::pair("limit gravity", "9.81"), std::pair("limit friction", "\"much\""),
         std::pair("limit friction", "["), std::pair("load CUT", "{}"),
         std::pair("waiver COL-01", "{\"reason\":\"\",\"by\":\"\",\"digest\":\"\"}"),
-        std::pair("clamp-force CLAMP", "1e999"), std::pair("nothing", "7")}) {
+        std::pair("clamp-force CLAMP", "1e999"),
+        std::pair("stated colour CLAMP", "{\"value\":1,\"reason\":\"\"}"),
+        std::pair("stated stroke_mm", "{\"value\":1,\"reason\":\"\"}"),
+        std::pair("stated stroke_mm CLAMP", "7"), std::pair("nothing", "7")}) {
     CAPTURE(name, value);
     const testing::TemporaryFolder folder;
     Project::create(folder / "a.dwp");

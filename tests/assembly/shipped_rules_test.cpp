@@ -9,6 +9,7 @@
 
 #include "dowel/assembly/rules.h"
 #include "fixture_projects.h"
+#include "rule_examples.h"
 
 namespace {
 
@@ -57,8 +58,7 @@ std::set<std::string> failing(const RuleReport& report) {
   return ids;
 }
 
-/// By rule: whether some subject passed, and some failed, in any example.
-using Seen = std::map<std::string, std::pair<bool, bool>>;
+using dowel::testing::Seen;
 
 /// Tries the fixture, spoilt by the example, and notes what became of each rule.
 void try_example(FixtureBuilder builder, const Example& example, std::set<std::string> expected,
@@ -343,10 +343,10 @@ void sink_head(FixtureBuilder& b, double radius_mm) {
 }
 
 void pinned_examples(Seen& seen) {
-  try_example(testing::pinned_fixture(true), {"round and diamond pin", {}, [](FixtureBuilder&) {}},
-              {}, seen);
+  try_example(testing::pinned_fixture(true),
+              {"round and diamond pin", {"LOC-10"}, [](FixtureBuilder&) {}}, {}, seen);
   try_example(testing::pinned_fixture(false),
-              {"two round pins", {"LOC-03", "LOC-08"}, [](FixtureBuilder&) {}}, {}, seen);
+              {"two round pins", {"LOC-03", "LOC-08", "LOC-10"}, [](FixtureBuilder&) {}}, {}, seen);
 }
 
 void screwed_examples(Seen& seen) {
@@ -480,6 +480,9 @@ TEST_CASE("every shipped rule has an example that it passes and one that it fail
   damaged_mesh_example(seen);
   screwed_examples(seen);
   pinned_examples(seen);
+  testing::stated_examples(seen);
+  testing::slot_examples(seen);
+  testing::tool_examples(seen);
   CHECK(seen.size() == dowel::shipped_rules().rules.size());
   for (const auto& [rule, states] : seen) {
     CAPTURE(rule);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -70,6 +71,13 @@ TEST_CASE("the gate and --strict decide the exit code", "[rule]") {
   const auto warned = desk.dowel({"rules", "check", "--gate", "warning", "--rules", "."});
   CHECK(warned.exit_code == 1);
   CHECK(warned.out.find("warning SHOP-01 PLATE has ") != std::string::npos);
+  // Neither the clamp's stroke nor the cutter is stated yet.
+  CHECK(desk.dowel({"rules", "check", "--strict"}).exit_code == 1);
+  for (const auto& [subject, quantity, value] :
+       {std::tuple("CLAMP", "stroke_mm", "5"), std::tuple("BORE", "cutter_mm", "20"),
+        std::tuple("BORE", "cutter_length_mm", "100")}) {
+    CHECK(desk.dowel({"design", subject, quantity, value, "reason", "a sheet"}).exit_code == 0);
+  }
   CHECK(desk.dowel({"rules", "check", "--strict"}).exit_code == 0);
   CHECK(desk.dowel({"force", "CLAMP", "off"}).exit_code == 0);
   CHECK(desk.dowel({"load", "CUT", "off"}).exit_code == 0);
@@ -158,6 +166,29 @@ TEST_CASE("overrides, waivers, roles and loads are commands that undo takes back
   const auto role = desk.dowel({"role", "REST1", "carpenter"});
   CHECK(role.exit_code == 3);
   CHECK(role.err.find("expected base plate, riser") != std::string::npos);
+}
+
+TEST_CASE("what is stated has a subject, a known quantity, a size and a reason", "[rule]") {
+  const Desk desk;
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& told) {
+    const auto result = desk.dowel(words);
+    INFO(result.out << result.err);
+    CHECK(result.exit_code == 3);
+    CHECK(result.err.find(told) != std::string::npos);
+  };
+  refused({"design", "CLMP", "stroke_mm", "5", "reason", "x"}, "did you mean CLAMP?");
+  refused({"design", "WORK.botom", "machined", "1", "reason", "x"}, "INSTANCE.FEATURE");
+  refused({"design", "CLAMP", "stroke", "5", "reason", "x"}, "did you mean stroke_mm?");
+  refused({"design", "CLAMP", "stroke_mm", "-5", "reason", "x"}, "expected 0 to");
+  refused({"design", "CLAMP", "stroke_mm", "5"}, "expected `reason`");
+  refused({"design", "CLAMP", "stroke_mm", "off"}, "is not stated");
+  CHECK(desk.dowel({"design", "WORK.bottom", "machined", "1", "reason", "drawing"}).exit_code == 0);
+  const Json json = Json::parse(desk.dowel({"design", "--json"}).out);
+  REQUIRE(json["stated"].size() == 1);
+  CHECK(json["stated"][0]["subject"] == "WORK.bottom");
+  CHECK(json["stated"][0]["reason"] == "drawing");
+  CHECK(desk.dowel({"undo"}).exit_code == 0);
+  CHECK(Json::parse(desk.dowel({"design", "--json"}).out)["stated"].empty());
 }
 
 TEST_CASE("explain shows every number of a verdict", "[rule]") {

@@ -13,6 +13,8 @@ JOIN instances AS a ON a.instance = f.instance
 JOIN instances AS b ON b.instance = f.holder
 WHERE f.instance < f.holder
   AND f.kind <> 'clamp'
+  AND a.role <> 'fastener'  -- systems share standard screws; CMP-02 and CMP-04 look at their size
+  AND b.role <> 'fastener'
   AND a.role <> 'workpiece'
   AND b.role <> 'workpiece'
 GROUP BY f.instance, f.holder

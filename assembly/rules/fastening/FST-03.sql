@@ -13,7 +13,13 @@ WITH joined(instance, most_um) AS (
   SELECT shaft_instance, most_clearance_um
   FROM fits
   WHERE coaxial = 1
-    AND most_clearance_um IS NOT NULL)
+    AND most_clearance_um IS NOT NULL
+  UNION ALL
+  SELECT k.holder, 1000.0 * sum(s.play_mm)
+  FROM fastenings AS k
+  JOIN slot_fits AS s ON s.instance = k.instance
+  WHERE k.kind = 'key'
+  GROUP BY k.instance, k.holder)
 SELECT i.instance AS subject,
        min(j.most_um) <= l.value AS ok,
        min(j.most_um) AS most_um,

@@ -12,4 +12,6 @@ FROM fits AS f
 JOIN instances AS i ON i.instance = f.hole_instance
 WHERE f.thread_formed = 1
   AND f.through = 1
+  AND NOT EXISTS (SELECT 1 FROM slot_fits AS s  -- T-nuts: FST-06
+                  WHERE s.instance = f.hole_instance AND s.foot_width_mm IS NOT NULL)
   AND i.role = 'fastener'

@@ -10,6 +10,7 @@ WITH foot(instance, z_mm, foot_mm2) AS (
   WHERE f.kind = 'face'
     AND f.dz < -0.999
     AND i.role IN ('riser', 'support', 'locator')
+    AND NOT EXISTS (SELECT 1 FROM slot_fits AS s WHERE s.instance = f.instance)  -- keys hang
     AND (f.use IN ('seat', 'bottom')
          OR (f.z_mm <= i.min_z_mm + 0.01
              AND NOT EXISTS (SELECT 1 FROM features AS s

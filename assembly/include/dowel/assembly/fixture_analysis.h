@@ -23,6 +23,21 @@ struct WorkpieceContact {
   std::vector<Eigen::Vector3d> corners;               ///< of the hull of the area
 };
 
+/// A pin of a locator in a hole of the workpiece. World frame.
+struct WorkpiecePin {
+  std::string instance;
+  std::string shaft;  ///< feature of the instance
+  std::string hole;   ///< feature of the workpiece
+  bool is_diamond = false;
+  double hole_mm = 0.0;                             ///< diameter of the hole
+  double pin_mm = 0.0;                              ///< of the pin, where it stops the hole
+  double length_mm = 0.0;                           ///< of the pin
+  double engagement_mm = 0.0;                       ///< of it in the hole
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();     ///< in the middle of that
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, into the workpiece's hole
+  std::vector<Eigen::Vector3d> normals;             ///< unit: ways in which it stops the workpiece
+};
+
 /// The workpiece and all that touches it: what the analysis and the rules reckon with.
 struct FixtureModel {
   std::string workpiece;
@@ -30,6 +45,7 @@ struct FixtureModel {
   std::optional<double> mass_kg;  ///< nothing where its density is not known
   Eigen::Vector3d center_of_mass = Eigen::Vector3d::Zero();
   std::vector<WorkpieceContact> contacts;  ///< by instance
+  std::vector<WorkpiecePin> pins;          ///< by instance
   /// Contacts with what is rigid and not a clamp. An area wider than half of `frame.length_mm`
   /// counts as two or three points, as far apart as it is wide.
   std::vector<LocatingPoint> locators;
@@ -99,6 +115,19 @@ struct FoolproofAnalysis {
   bool is_foolproof() const;
 };
 
+/// Whether a wrench reaches a screw or nut, and whether that gets to its place at all.
+struct WrenchAccess {
+  std::string fastener;
+  std::string wrench;             ///< "hex key 10", "socket 18"
+  bool before_workpiece = false;  ///< it is tightened before the workpiece and its clamps are there
+  bool is_free = false;           ///< the wrench goes onto it, straight along its axis
+  std::string blocked_by;         ///< the first thing in its way; empty where there is none
+  double lever_mm = 0.0;
+  double swing_rad = 0.0;        ///< the widest angle through which the lever turns freely
+  std::optional<bool> comes_in;  ///< a screw comes to its place along its axis; nuts: not told
+  std::string stopped_by;        ///< empty where it comes in
+};
+
 struct FixtureAnalysis {
   FixtureModel model;
   Locating locating;
@@ -110,6 +139,7 @@ struct FixtureAnalysis {
   double support_margin_mm = 0.0;  ///< of the centre of mass; negative outside
   UnloadAnalysis unloading;
   FoolproofAnalysis foolproof;
+  std::vector<WrenchAccess> wrenches;  ///< by fastener
 };
 
 /// The workpiece of the project and its contacts. Throws Error{InvalidInput} where there is not

@@ -62,6 +62,28 @@ std::span<const Limit> limits();
 /// Nothing where there is none of that name.
 const Limit* find_limit(std::string_view name);
 
+/// A quantity of a single part, feature, element or point that nobody can measure on its geometry.
+struct StatedQuantity {
+  std::string_view name;  ///< ends in its unit
+  double least = 0.0;
+  double most = 0.0;
+  std::string_view of;  ///< what it is stated of
+  std::string_view meaning;
+};
+
+/// All of them, by name.
+std::span<const StatedQuantity> stated_quantities();
+/// Nothing where there is none of that name.
+const StatedQuantity* find_stated_quantity(std::string_view name);
+
+/// What somebody states it to be, and by what.
+struct StatedValue {
+  double value = 0.0;
+  std::string reason;
+
+  bool operator==(const StatedValue&) const = default;
+};
+
 /// A rule that counts less, or more, than it is shipped to.
 struct RuleOverride {
   std::string severity;  ///< "error", "warning", "info" or "off"
@@ -84,14 +106,18 @@ struct FixtureDesign {
   std::map<std::string, Role> roles;             ///< by instance, where the catalogue's is not it
   std::map<std::string, double> clamp_forces_N;  ///< by instance
   std::map<std::string, double>
-      locator_errors_mm;                          ///< by instance: plus or minus, along its normal
-  std::map<std::string, Load> loads;              ///< by name
-  std::map<std::string, CriticalPoint> points;    ///< by name
-  std::map<std::string, double> limits;           ///< by name, where they are not the usual ones
-  std::map<std::string, RuleOverride> overrides;  ///< by rule
+      locator_errors_mm;                        ///< by instance: plus or minus, along its normal
+  std::map<std::string, Load> loads;            ///< by name
+  std::map<std::string, CriticalPoint> points;  ///< by name
+  std::map<std::string, double> limits;         ///< by name, where they are not the usual ones
+  /// By quantity and subject: an instance, INSTANCE.FEATURE, an element or a critical point.
+  std::map<std::pair<std::string, std::string>, StatedValue> stated;
+  std::map<std::string, RuleOverride> overrides;                  ///< by rule
   std::map<std::pair<std::string, std::string>, Waiver> waivers;  ///< by rule and subject
 
   double limit(std::string_view name) const;  ///< Expects: a known name.
+  /// Nothing where nobody states it.
+  std::optional<double> stated_value(std::string_view quantity, const std::string& subject) const;
   /// Forgets what was said of an instance. Waivers stay: they will be told as stale.
   void forget(const std::string& instance);
 

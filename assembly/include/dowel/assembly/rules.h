@@ -109,6 +109,15 @@ struct FactDescription {
 
 std::vector<FactDescription> describe_facts();
 
+/// A function that rules can call, for documentation.
+struct FunctionDescription {
+  std::string name;
+  std::string arguments;
+  std::string meaning;
+};
+
+std::vector<FunctionDescription> describe_functions();
+
 /// Checks rules against a session's project. What a rule reads is known from its query: a check
 /// after an edit runs those rules alone whose facts have changed, and answers as a first one would.
 class RuleChecker {
