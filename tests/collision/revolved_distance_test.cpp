@@ -78,8 +78,7 @@ TEST_CASE("the distance from coarse solids of revolution is that from their prof
     const double share = random.uniform(0.0, is_by_rim ? 0.05 : 1.0);
     const Eigen::Vector2d on = a + (random.index(2) == 0 ? share : 1.0 - share) * (b - a);
     const double seam = 2.0 * std::numbers::pi / segments * random.index(segments);
-    const double angle =
-        is_by_rim ? seam + random.uniform(-0.02, 0.02) : random.uniform(0.0, 6.3);
+    const double angle = is_by_rim ? seam + random.uniform(-0.02, 0.02) : random.uniform(0.0, 6.3);
     const Eigen::Vector3d p =
         Eigen::Vector3d(on.x() * std::cos(angle), on.x() * std::sin(angle), on.y()) +
         random.point(is_by_rim ? 0.02 : 0.3);
