@@ -56,41 +56,78 @@ struct WasherSize {
   double heavy_height_mm = 0.0;
 };
 
+/// Collar of a hexagon nut like DIN 6331, as high over all and as wide as the one of DIN 6330.
+struct CollarSize {
+  double diameter_mm = 0.0;  ///< d1
+  double height_mm = 0.0;    ///< a
+};
+
+/// Spherical washer like DIN 6319 form C and the conical seats it turns in, form D and, for slotted
+/// holes, the wide form G.
+struct SphericalWasherSize {
+  double inner_mm = 0.0;        ///< d1
+  double outer_mm = 0.0;        ///< d3, that of form D, too
+  double height_mm = 0.0;       ///< h2
+  double ball_radius_mm = 0.0;  ///< R
+  double seat_inner_mm = 0.0;   ///< d2 of D and G
+  double seat_mouth_mm = 0.0;   ///< d5 of D and G, the cone's upper end
+  double seat_height_mm = 0.0;  ///< h3 of D
+  double wide_outer_mm = 0.0;   ///< d4 of G
+  double wide_height_mm = 0.0;  ///< h3 of G
+};
+inline constexpr double kConicalSeat_deg = 120.0;
+
 struct FastenerSize {
   ThreadSize thread{};
   SocketHead socket{};
   NutSize nut{};
   WasherSize washer{};
+  CollarSize collar{};
+  SphericalWasherSize spherical{};
 };
 
-/// M6 to M16 coarse, and M12x1.5. Sources: ISO 273 clearance holes; ISO 4762, 4032, 7089, DIN 6330
-/// and 6340 as in the tables of FastenersWB, ISO 4032 widths across flats of the 2012 edition;
-/// counterbores and key depths are general knowledge.
+/// M6 to M16 coarse, and M12x1.5. Sources: ISO 273 clearance holes; ISO 4762, 4032, 7089, DIN 6330,
+/// 6331, 6340 and 6319 as in the tables of FastenersWB (M8 of DIN 6331 as its misprint "3,5" was
+/// meant), ISO 4032 widths across flats of the 2012 edition; cones of DIN 6319 as in a maker's data
+/// sheet (Ganter); ball radii (size 20 confirmed by FastenersWB), counterbores and key depths are
+/// general knowledge.
 inline constexpr std::array<FastenerSize, 6> kFasteners{{
     {{"M6", 6.0, 1.0, 4.917, 6.6, 11.0, 6.8},
      {10.0, 6.0, 5.0, 3.0},
      {5.2, 10.0, 9.0},
-     {6.4, 12.0, 1.6, 6.4, 17.0, 3.0}},
+     {6.4, 12.0, 1.6, 6.4, 17.0, 3.0},
+     {14.0, 3.0},
+     {6.4, 12.0, 2.3, 9.0, 7.1, 11.0, 2.8, 17.0, 4.0}},
     {{"M8", 8.0, 1.25, 6.647, 9.0, 15.0, 9.0},
      {13.0, 8.0, 6.0, 4.0},
      {6.8, 13.0, 12.0},
-     {8.4, 16.0, 1.6, 8.4, 23.0, 4.0}},
+     {8.4, 16.0, 1.6, 8.4, 23.0, 4.0},
+     {18.0, 3.5},
+     {8.4, 17.0, 3.2, 12.0, 9.6, 14.5, 3.5, 24.0, 5.0}},
     {{"M10", 10.0, 1.5, 8.376, 11.0, 18.0, 11.0},
      {16.0, 10.0, 8.0, 5.0},
      {8.4, 16.0, 15.0},
-     {10.5, 20.0, 2.0, 10.5, 26.0, 4.0}},
+     {10.5, 20.0, 2.0, 10.5, 26.0, 4.0},
+     {22.0, 4.0},
+     {10.5, 21.0, 4.0, 15.0, 12.0, 18.5, 4.2, 30.0, 5.0}},
     {{"M12", 12.0, 1.75, 10.106, 13.5, 20.0, 13.0},
      {18.0, 12.0, 10.0, 6.0},
      {10.8, 18.0, 18.0},
-     {13.0, 24.0, 2.5, 13.0, 35.0, 5.0}},
+     {13.0, 24.0, 2.5, 13.0, 35.0, 5.0},
+     {25.0, 4.0},
+     {13.0, 24.0, 4.6, 17.0, 14.2, 20.0, 5.0, 36.0, 6.0}},
     {{"M12x1.5", 12.0, 1.5, 10.376, 13.5, 20.0, 13.0},
      {18.0, 12.0, 10.0, 6.0},
      {10.8, 18.0, 18.0},
-     {13.0, 24.0, 2.5, 13.0, 35.0, 5.0}},
+     {13.0, 24.0, 2.5, 13.0, 35.0, 5.0},
+     {25.0, 4.0},
+     {13.0, 24.0, 4.6, 17.0, 14.2, 20.0, 5.0, 36.0, 6.0}},
     {{"M16", 16.0, 2.0, 13.835, 17.5, 26.0, 17.5},
      {24.0, 16.0, 14.0, 8.0},
      {14.8, 24.0, 24.0},
-     {17.0, 30.0, 3.0, 17.0, 45.0, 6.0}},
+     {17.0, 30.0, 3.0, 17.0, 45.0, 6.0},
+     {31.0, 5.0},
+     {17.0, 30.0, 5.3, 22.0, 19.0, 26.0, 6.2, 44.0, 7.0}},
 }};
 
 /// The row of `kFasteners` called `thread`. Expects: there is one.

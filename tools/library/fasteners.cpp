@@ -171,6 +171,38 @@ Part hexagon_nut(const System& system, const FastenerSize& size, bool high) {
   return part;
 }
 
+/// The nut of DIN 6330 on a collar: no washer needed on a slotted strap.
+Part collar_nut(const System& system, std::string_view thread) {
+  Part part;
+  const FastenerSize& size = fastener_size(thread);
+  const double width_mm = size.nut.width_mm;
+  const double height_mm = size.nut.high_height_mm;
+  const auto [collar_mm, collar_height_mm] = size.collar;
+  part.name = element_name(system, "collar-nut-" + std::string(thread));
+  part.role = "fastener";
+  part.description = "hexagon nut " + std::string(thread) + " with a collar, 1.5 d high";
+  part.source = "like DIN 6331";
+  part.dimensions = {{"height", height_mm},
+                     {"width_across_flats", width_mm},
+                     {"collar_diameter", collar_mm},
+                     {"collar_height", collar_height_mm}};
+  std::vector<Eigen::Vector2d> upper = chamfered_end(width_mm, height_mm, false);
+  upper.insert(upper.begin(), {{0.0, 0.0}, {upper.front().x(), 0.0}});
+  const TopoDS_Shape body =
+      fuse(turned({{0.0, 0.0},
+                   {collar_mm / 2.0, 0.0},
+                   {collar_mm / 2.0, collar_height_mm},
+                   {0.0, collar_height_mm}}),
+           common(hexagon(width_mm, collar_height_mm / 2.0, height_mm), turned(upper)));
+  part.features = {tapped_hole({"thread", {0.0, 0.0, height_mm}}, size.thread, height_mm, true)};
+  part.solid = machined(body, part.features);
+  part.features.push_back(shaft_down("collar", collar_height_mm, collar_mm, collar_height_mm));
+  part.features.push_back(face("seat", {0.0, 0.0, 0.0}, kDown));
+  part.features.push_back(face("top", {0.0, 0.0, height_mm}, kUp));
+  part.colour = kBrightSteelColour;
+  return part;
+}
+
 Part washer(const System& system, const FastenerSize& size, bool heavy) {
   Part part;
   const double inner_mm = heavy ? size.washer.heavy_inner_mm : size.washer.inner_mm;
@@ -259,6 +291,10 @@ std::vector<Part> studs(const System& system) {
 
 std::vector<Part> nuts(const System& system) {
   return both_of_each(system, system.nut_threads, hexagon_nut);
+}
+
+std::vector<Part> collar_nuts(const System& system) {
+  return each(system, system.nut_threads, collar_nut);
 }
 
 std::vector<Part> washers(const System& system) {

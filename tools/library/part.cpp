@@ -12,11 +12,18 @@
 namespace dowel::library {
 namespace {
 
+/// A mouth cone of so many bores makes a hole a countersunk one (catalog/README.md).
+constexpr double kCountersinkRatio = 1.5;
+
 /// What stands before the number of a hole's name.
 std::string hole_prefix(const Feature& hole) {
   const HoleSegment& mouth = hole.segments.front();
   if (mouth.type == HoleSegment::Type::Cylinder && mouth.diameter_mm > hole.diameter_mm) {
     return "cb";
+  }
+  if (mouth.type == HoleSegment::Type::Cone &&
+      mouth.diameter_mm >= kCountersinkRatio * hole.diameter_mm) {
+    return "cs";
   }
   return hole.through ? "h" : "b";
 }
