@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "checksum.h"
@@ -17,6 +18,7 @@
 #include "dowel/kernel/mass_properties.h"
 #include "dowel/kernel/mesh_defect.h"
 #include "dowel/kernel/tolerance.h"
+#include "fastener_lint.h"
 
 namespace dowel {
 namespace {
@@ -67,6 +69,7 @@ class ElementLint {
   void check_counts();
   void check_features();
   void check_hole(const Feature& hole);
+  void check_slot(const Feature& slot);
   void check_box();
   void check_volume();
   void check_holes();
@@ -128,9 +131,11 @@ void ElementLint::check_features() {
       }
     }
     if (feature.kind == FeatureKind::Hole) check_hole(feature);
+    if (feature.kind == FeatureKind::Slot) check_slot(feature);
     check_thread(feature);
     check_fit(feature);
   }
+  for (std::string& message : fastener_contradictions(element_)) add("CAT-01", std::move(message));
 }
 
 /// A thread is drawn as a cylinder between its minor and its nominal diameter.
@@ -180,6 +185,21 @@ void ElementLint::check_hole(const Feature& hole) {
   if (!has_bore || !(hole.diameter_mm > 0.0)) {
     add("CAT-01", "hole " + hole.name + " has no cylinder of its diameter, " +
                       number(hole.diameter_mm) + " mm");
+  }
+}
+
+/// A T-slot is a throat over something wider.
+void ElementLint::check_slot(const Feature& slot) {
+  if (!slot.slot || slot.slot->type != SlotShape::Type::Tee) return;
+  if (slot.slot->undercut_width_mm <= slot.diameter_mm) {
+    add("CAT-01", "T-slot " + slot.name + " is " + number(slot.diameter_mm) +
+                      " mm wide at its mouth, " + number(slot.slot->undercut_width_mm) +
+                      " mm below");
+  }
+  const double sum_mm = slot.slot->throat_depth_mm + slot.slot->undercut_height_mm;
+  if (sum_mm > slot.depth_mm + kCoincident_mm) {
+    add("CAT-01", "T-slot " + slot.name + " is " + number(slot.depth_mm) +
+                      " mm deep, its throat and undercut together " + number(sum_mm) + " mm");
   }
 }
 
@@ -336,8 +356,8 @@ void ElementLint::check_origin() {
 using FirstOf = std::map<std::pair<std::size_t, std::uint64_t>, std::string>;
 
 void lint_stored(const Catalog& catalog, const std::string& name, FirstOf& first_of,
-                 std::vector<LintFinding>& findings) {
-  const std::optional<Element> element = catalog.find(name);
+                 std::vector<Element>& fasteners, std::vector<LintFinding>& findings) {
+  std::optional<Element> element = catalog.find(name);
   if (!element) return;  // another program has just removed it
   const auto solid = catalog.solid(name);
   catalog.brep(name);  // damage shows here
@@ -348,6 +368,7 @@ void lint_stored(const Catalog& catalog, const std::string& name, FirstOf& first
     findings.push_back({"CAT-07", LintFinding::Severity::Warning, name,
                         "has the same facets as " + first->second});
   }
+  if (element->role == "fastener") fasteners.push_back(std::move(*element));
 }
 
 }  // namespace
@@ -365,13 +386,21 @@ std::vector<LintFinding> lint(const Element& element, const FacetedSolid& solid)
 std::vector<LintFinding> lint(const Catalog& catalog) {
   std::vector<LintFinding> findings;
   FirstOf first_of;
+  std::vector<Element> fasteners;
   for (const std::string& name : catalog.names()) {
     try {
-      lint_stored(catalog, name, first_of, findings);
+      lint_stored(catalog, name, first_of, fasteners, findings);
     } catch (const Error& error) {
       findings.push_back({"CAT-08", LintFinding::Severity::Error, name, error.what()});
     }
   }
+  for (SizeFault& fault : size_faults(fasteners)) {
+    findings.push_back({"CAT-01", LintFinding::Severity::Error, std::move(fault.element),
+                        std::move(fault.message)});
+  }
+  std::ranges::stable_sort(findings, {}, [](const LintFinding& finding) {
+    return std::tie(finding.element, finding.rule);
+  });
   return findings;
 }
 

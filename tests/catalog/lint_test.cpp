@@ -10,38 +10,16 @@
 #include "dowel/catalog/recognition.h"
 #include "dowel/kernel/mass_properties.h"
 #include "program.h"
+#include "slotted_solids.h"
 #include "solids.h"
+#include "sound_record.h"
 
 namespace {
 
 using dowel::ElementRecord;
 using dowel::FacetedSolid;
 using dowel::LintFinding;
-
-/// A record whose numbers agree with its solid.
-ElementRecord sound_record(const std::string& name, FacetedSolid solid) {
-  ElementRecord record;
-  dowel::Element& element = record.element;
-  const dowel::MassProperties mass = mass_properties(solid);
-  element.name = name;
-  element.source = name + ".step";
-  element.unit_in_file = "mm";
-  element.licence = "CC0-1.0";
-  element.sha256 = std::string(64, 'a');
-  element.solids = solid.solid_count;
-  element.volume_mm3 = mass.volume_mm3;
-  element.surface_mm2 = mass.surface_mm2;
-  element.center_of_mass = mass.center_of_mass;
-  element.features = recognise_features(solid);
-  element.shape = classify_shape(solid, element.features);
-  element.triangles = count_triangles(solid, classify_faces(solid, element.features));
-  element.obb = enclosing_box(solid);
-  for (const dowel::Face& face : solid.faces) {
-    element.facet_error_mm = std::max(element.facet_error_mm, face.facet_error_mm);
-  }
-  record.solid = std::move(solid);
-  return record;
-}
+using dowel::testing::sound_record;
 
 ElementRecord plate_record() {
   return sound_record("plate", dowel::testing::plate_with_holes(
@@ -120,6 +98,22 @@ TEST_CASE("CAT-01 finds numbers that do not agree with each other", "[rule]") {
   const Rules rules = rules_of(record);
   REQUIRE_FALSE(rules.empty());
   CHECK(rules.front() == "CAT-01");
+}
+
+TEST_CASE("CAT-01 finds T-slots that are none", "[rule]") {
+  ElementRecord record =
+      sound_record("bar", dowel::testing::tee_bar(60.0, 50.0, 100.0, {}, {30.0}));
+  REQUIRE(rules_of(record).empty());
+  const auto slot =
+      std::ranges::find(record.element.features, dowel::FeatureKind::Slot, &dowel::Feature::kind);
+  REQUIRE(slot != record.element.features.end());
+  SECTION("for nothing is wider below the throat") {
+    slot->slot->undercut_width_mm = slot->diameter_mm;
+  }
+  SECTION("for throat and undercut are deeper than the slot") {
+    slot->slot->undercut_height_mm += 0.5;
+  }
+  CHECK(rules_of(record) == Rules{"CAT-01"});
 }
 
 TEST_CASE("CAT-02 finds a box that the element stands out of", "[rule]") {

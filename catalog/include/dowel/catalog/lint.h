@@ -29,8 +29,9 @@ std::string_view to_string(LintFinding::Severity severity);
 std::vector<LintFinding> lint(const Element& element, const FacetedSolid& solid);
 
 /// What is wrong with the catalogue, by name of the element and rule: each element by itself, equal
-/// ones among them (CAT-07), and those that cannot be read (CAT-08). Goes on past damage where the
-/// list of names can be read; throws Error where it cannot.
+/// ones among them (CAT-07), fasteners beside the next smaller size (CAT-01), and those that cannot
+/// be read (CAT-08). Goes on past damage where the list of names can be read; throws Error where it
+/// cannot.
 std::vector<LintFinding> lint(const Catalog& catalog);
 
 }  // namespace dowel
