@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "disjoint_sets.h"
 #include "facet_geometry.h"
@@ -81,11 +83,16 @@ std::vector<Piece> rim_pieces(const FacetedSolid& solid, const std::vector<FaceN
 /// Pieces that hang together, as indices.
 std::vector<std::vector<std::size_t>> loops(const std::vector<Piece>& pieces) {
   DisjointSets sets(pieces.size());
-  std::map<std::uint32_t, std::size_t> piece_at;
+  std::vector<std::pair<std::uint32_t, std::size_t>> piece_at;
+  piece_at.reserve(2 * pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (const std::uint32_t v : {pieces[i].edge.from, pieces[i].edge.to}) {
-      const auto [at, is_new] = piece_at.emplace(v, i);
-      if (!is_new) sets.join(at->second, i);
+    piece_at.emplace_back(pieces[i].edge.from, i);
+    piece_at.emplace_back(pieces[i].edge.to, i);
+  }
+  std::sort(piece_at.begin(), piece_at.end());
+  for (std::size_t i = 1; i < piece_at.size(); ++i) {
+    if (piece_at[i].first == piece_at[i - 1].first) {
+      sets.join(piece_at[i - 1].second, piece_at[i].second);
     }
   }
   return sets.sets();

@@ -85,6 +85,31 @@ void add_rims(const FacetedSolid& solid, std::vector<FaceNode>& nodes) {
   }
 }
 
+/// The vertices of each face, sorted by way of the faces of each vertex: large faces have many.
+void add_vertices(const FacetedSolid& solid, std::vector<FaceNode>& nodes) {
+  struct Use {
+    std::uint32_t vertex = 0;
+    std::uint32_t face = 0;
+  };
+  std::vector<Use> uses;  // each once, by face
+  uses.reserve(2 * solid.vertices.size());
+  std::vector<std::size_t> seen_by(solid.vertices.size(), nodes.size());  // the last face to do so
+  std::vector<std::uint32_t> begin(solid.vertices.size() + 1, 0);
+  for (std::uint32_t f = 0; f < nodes.size(); ++f) {
+    for (const std::uint32_t t : nodes[f].triangles) {
+      for (const std::uint32_t v : solid.triangles[t]) {
+        if (std::exchange(seen_by[v], f) == f) continue;
+        uses.push_back({v, f});
+        ++begin[v + 1];
+      }
+    }
+  }
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<Use> by_vertex(uses.size());
+  for (const Use& use : uses) by_vertex[begin[use.vertex]++] = use;
+  for (const Use& use : by_vertex) nodes[use.face].vertices.push_back(use.vertex);
+}
+
 }  // namespace
 
 std::vector<FaceNode> face_graph(const FacetedSolid& solid) {
@@ -102,15 +127,9 @@ std::vector<FaceNode> face_graph(const FacetedSolid& solid) {
     nodes[solid.face_of[t]].triangles.push_back(t);
   }
   add_rims(solid, nodes);
-  std::vector<std::size_t> seen_by(solid.vertices.size(), nodes.size());  // the last face to do so
+  add_vertices(solid, nodes);
   for (std::size_t f = 0; f < nodes.size(); ++f) {
     FaceNode& node = nodes[f];
-    for (const std::uint32_t t : node.triangles) {
-      for (const std::uint32_t v : solid.triangles[t]) {
-        if (std::exchange(seen_by[v], f) != f) node.vertices.push_back(v);
-      }
-    }
-    std::sort(node.vertices.begin(), node.vertices.end());
     sort_unique(node.neighbours);
     if (!std::holds_alternative<OtherSurface>(node.surface)) continue;
     if (const auto fit = fit_surface(solid, solid.faces[f], node.triangles)) {

@@ -182,11 +182,12 @@ double turn_covered(const FacetedSolid& solid, const std::vector<FaceNode>& grap
   const Eigen::Vector3d u = any_perpendicular(axis.direction);
   const Eigen::Vector3d v = axis.direction.cross(u);
   std::vector<std::pair<double, double>> arcs;  // from [0, turn), to
+  std::vector<double> angles;                   // of one facet's corners; kept, for there are many
   for (const std::uint32_t face : faces) {
     for (const std::uint32_t t : graph[face].triangles) {
       // A facet covers the turn between its corners without their widest gap; a corner on the axis
       // has no angle.
-      std::vector<double> angles;
+      angles.clear();
       for (const Eigen::Vector3d& p : solid.corners(t)) {
         if (axis.distance_mm(p) <= kSameFeature_mm) continue;
         const double angle = std::atan2(v.dot(p - axis.origin), u.dot(p - axis.origin));
