@@ -152,8 +152,8 @@ std::optional<std::string> shrinkage(const Element& smaller, const Element& larg
   for (const auto& [called, diameter_mm] : diameters_mm(larger)) {
     const auto same = before.find(called);
     if (same == before.end() || diameter_mm >= same->second - kBoxSlack_mm) continue;
-    return "its " + called + " is " + number(diameter_mm) + " mm thick, that" + next_smaller +
-           number(same->second) + " mm";
+    std::string fault = "its " + called + " is " + number(diameter_mm) + " mm thick, that";
+    return fault.append(next_smaller).append(number(same->second)).append(" mm");
   }
   const Eigen::Vector3d from_mm = sorted_sides_mm(smaller);
   const Eigen::Vector3d to_mm = sorted_sides_mm(larger);
@@ -206,6 +206,7 @@ std::vector<SizeFault> size_faults(std::span<const Element> fasteners) {
     }
   }
   std::vector<SizeFault> faults;
+  faults.reserve(message_of.size());
   for (auto& [name, message] : message_of) faults.push_back({name, std::move(message)});
   return faults;
 }

@@ -323,12 +323,12 @@ void ElementLint::check_faces() {
   }
 }
 
-/// Between magnesium foam and gold: a density in g/cm3 or in t/mm3 is none.
+/// In kg/m3, between magnesium foam and gold: a density in g/cm3 or in t/mm3 is none.
 void ElementLint::check_density() {
-  constexpr double kLeast_kg_per_m3 = 100.0;
-  constexpr double kMost_kg_per_m3 = 25000.0;
+  constexpr double kLeastDensity = 100.0;
+  constexpr double kMostDensity = 25000.0;
   const double density = element_.density_kg_per_m3;
-  if (density == 0.0 || (density >= kLeast_kg_per_m3 && density <= kMost_kg_per_m3)) return;
+  if (density == 0.0 || (density >= kLeastDensity && density <= kMostDensity)) return;
   add("CAT-05",
       "its density is " + number(density) + " kg/m3, expected 100 to 25000: is the unit right?");
 }
