@@ -258,7 +258,7 @@ FasteningChoices choose_in_slot(const Bore& bore, const SlotBelow& below,
     if (a.screw.nominal_mm != b.screw.nominal_mm) return a.screw.nominal_mm > b.screw.nominal_mm;
     return a.screw.length_mm < b.screw.length_mm;
   });
-  if (all.ways.empty() && all.reason.empty()) all.reason = "no T-nut fits the slot";
+  if (all.ways.empty() && all.reason.empty()) all.reason = "no T-nut with a neck fits the slot";
   return all;
 }
 
