@@ -83,9 +83,13 @@ class DepthOracle {
       distance_mm = found->distance_mm;
       result.boundary = found->b;
     }
-    classifier_.Perform(to_pnt(point), 1e-9);
-    result.depth_mm = classifier_.State() == TopAbs_IN ? distance_mm : -distance_mm;
+    result.depth_mm = contains(point) ? distance_mm : -distance_mm;
     return result;
+  }
+
+  bool contains(const Eigen::Vector3d& point) {
+    classifier_.Perform(to_pnt(point), 1e-9);
+    return classifier_.State() == TopAbs_IN;
   }
 
  private:
@@ -130,7 +134,8 @@ class Overlap {
     double best_mm = 0.0;
     for (const Piece& piece : pieces_) {
       for (const Eigen::Vector3d& start : starts(piece.solid, enough_mm)) {
-        best_mm = std::max(best_mm, climb_mm(start, enough_mm));
+        const Ball ball = climbed(start, enough_mm);
+        if (ball.diameter_mm > best_mm && holds(ball)) best_mm = ball.diameter_mm;
         if (best_mm >= enough_mm) return best_mm;
       }
     }
@@ -196,8 +201,29 @@ class Overlap {
     return result;
   }
 
+  struct Ball {
+    Eigen::Vector3d center;
+    double diameter_mm = 0.0;
+  };
+
+  /// Whether places all around on the ball lie in both solids: a distance may have missed a face.
+  bool holds(const Ball& ball) {
+    constexpr int kPlaces = 64;
+    constexpr double kGoldenAngle_rad = 2.399963229728653;
+    constexpr double kAlmost = 0.98;
+    for (int i = 0; i < kPlaces; ++i) {
+      const double z = 1.0 - (2.0 * i + 1.0) / kPlaces;
+      const double across = std::sqrt(1.0 - z * z);
+      const Eigen::Vector3d direction(across * std::cos(i * kGoldenAngle_rad),
+                                      across * std::sin(i * kGoldenAngle_rad), z);
+      const Eigen::Vector3d place = ball.center + kAlmost * 0.5 * ball.diameter_mm * direction;
+      if (!depth_a_.contains(place) || !depth_b_.contains(place)) return false;
+    }
+    return true;
+  }
+
   /// Away from the nearest boundary, for as long as that makes the ball larger.
-  double climb_mm(Eigen::Vector3d point, double enough_mm) {
+  Ball climbed(Eigen::Vector3d point, double enough_mm) {
     const auto at = [this](const Eigen::Vector3d& p) {
       const DepthOracle::Depth a = depth_a_(p);
       const DepthOracle::Depth b = depth_b_(p);
@@ -219,7 +245,7 @@ class Overlap {
         step_mm *= 0.5;
       }
     }
-    return 2.0 * best.depth_mm;
+    return {point, 2.0 * best.depth_mm};
   }
 
   DepthOracle depth_a_;
