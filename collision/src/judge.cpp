@@ -34,34 +34,33 @@ PairVerdict Judge::decide() {
   if (are_shallow && still_touches()) return result_;
   const bool is_free = shaft_fits() || are_shallow;
   if (is_decided_) return result_;
-  const bool crossed = memory_.crossing_a != PairMemory::kNone;
   if (!is_free) {
     // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
-    // before, others are likely to do so now.
+    // before, they are likely to do so now.
     if (cores_overlap()) return result_;
     look_for_containment();
-    if (is_interference()) return result_;
-    if (crossed) look_for_interference();
-    if (is_interference()) return result_;
-    memory_.crossing_a = PairMemory::kNone;
+    if (is_interference() || still_crosses()) return result_;
   }
-  if (are_shallow || !still_touches()) look_for_contact();
-  if (!is_free && is_suspect_ && !crossed) look_for_interference();
+  const bool is_contact = (!are_shallow && still_touches()) || seat_touches();
+  if (!is_contact || !is_free) look_among_facets(!is_free);
   return result_;
 }
 
 PairVerdict Judge::decide_by_brute_force() {
   double apart = std::numeric_limits<double>::infinity();
+  scratch_.facets.clear();
   for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-    return !faces_lie_on_each_other(i, a_B, j) && !touches(i, a_B, j, apart);
+    if (is_clear()) faces_lie_on_each_other(i, a_B, j);
+    const auto near = near_facets(i, a_B, j, apart);
+    if (near && crosses(*near, a_B)) return false;
+    if (near && is_clear()) scratch_.facets.push_back(*near);
+    return true;
   });
-  if (is_suspect_) {
-    for_each_pair([&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-      return !crosses(i, a_B, j);
-    });
+  for (const NarrowScratch::FacetPair& near : scratch_.facets) {
+    if (!is_clear() || touches(near)) break;
   }
-  if (result_.verdict != Verdict::Interference) look_for_containment();
-  if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, options_.tolerance_mm);
+  if (!is_interference()) look_for_containment();
+  if (is_clear()) result_.gap_mm = std::max(apart, options_.tolerance_mm);
   return result_;
 }
 

@@ -55,9 +55,11 @@ class Judge {
         counters_(counters),
         erosion_mm_(0.5 * options.tolerance_mm) {}
 
-  /// What was found out at the last pose, tested at this one. False where that decides nothing.
+  /// What was found out at the last pose, tested at this one, at a small part of the cost of
+  /// `decide`. False where that decides nothing.
   bool recall();
 
+  /// The verdict, after `recall` gave none.
   PairVerdict decide();
 
   /// The same by looking at all pairs of facets, without knowing of anything that forbids one or
@@ -103,10 +105,6 @@ class Judge {
   /// The same for a place of B.
   bool touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j);
 
-  /// Looks for facets within the tolerance: first, at little cost, flat ones that face each other,
-  /// as in most contacts, then all.
-  void look_for_contact();
-
   /// Whether a seat of one body is in contact on a plane of the other one.
   bool seat_touches();
 
@@ -116,9 +114,8 @@ class Judge {
   /// Whether two flat facets that face each other within the tolerance have an area in common.
   bool faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j);
 
-  /// Whether the exact faces behind two facets come within the tolerance there. Else lowers `apart`
-  /// to a bound of their distance.
-  bool touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j, double& apart);
+  /// Whether the exact faces behind two facets come within the tolerance there.
+  bool touches(const NarrowScratch::FacetPair& near);
 
   /// Projects to and fro between the exact faces behind two facets: both ends are real places of
   /// the boundary.
@@ -126,6 +123,7 @@ class Judge {
 
   // Interference.
 
+  bool is_clear() const { return result_.verdict == Verdict::Clear; }
   bool is_interference() const { return result_.verdict == Verdict::Interference; }
 
   /// The cores that overlapped still do.
@@ -140,10 +138,19 @@ class Judge {
   /// to it is.
   bool knows_ball();
 
-  void look_for_interference();
+  /// Whether the facets that led to interference last time do so again.
+  bool still_crosses();
+
+  /// Whether a witness of interference is found from the middle of the crossing of two facets moved
+  /// inwards. Counts down `tries` where they cross.
+  bool crosses_in_the_middle(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j,
+                             int& tries);
 
   /// Whether a witness of interference is found from two facets.
-  bool crosses(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j);
+  bool crosses(const NarrowScratch::FacetPair& near, const PlacedTriangle& a_B);
+
+  /// Where two facets cross that were moved inwards by half the tolerance.
+  std::optional<Segment> eroded_crossing(const PlacedTriangle& a_B, const ModelTriangle& b) const;
 
   /// How far a witness may lie from its start.
   double reach_mm(const ModelTriangle& a, const ModelTriangle& b) const;
@@ -160,6 +167,21 @@ class Judge {
   static bool in_box(const CollisionModel& model, const Eigen::Vector3d& point);
 
   // Both.
+
+  /// Looks for facets of which one leads to interference, and else for such that are in contact.
+  void look_among_facets(bool may_interfere);
+
+  /// Tree against tree: lists the leaves that are near each other. May find flat facets that face
+  /// each other, as in most contacts, or facets that cross.
+  void list_near_leaves(bool may_interfere, double& apart);
+
+  /// The facets of the listed leaves, one pair after the other.
+  void look_at_listed_leaves(bool may_interfere, double& apart);
+
+  /// Two facets that are close enough to stand for places within the tolerance of each other. Else
+  /// lowers `apart` to a bound of the distance of these.
+  std::optional<NarrowScratch::FacetPair> near_facets(std::uint32_t i, const PlacedTriangle& a_B,
+                                                      std::uint32_t j, double& apart);
 
   bool takes_part(const ModelTriangle& t) const;
 
@@ -183,7 +205,7 @@ class Judge {
   RefutedStarts no_witness_from_;
 
   bool is_decided_ = false;
-  bool is_suspect_ = false;  // facets came within the tolerance and what their faces stand off them
+  bool cores_were_asked_ = false;
   PairVerdict result_;
 };
 

@@ -84,7 +84,9 @@ bool Judge::still_touches() {
   }
   const PlacedTriangle a_B = placement_ * pair_.a.triangles()[i];
   if (faces_lie_on_each_other(i, a_B, j)) return true;
-  if (double ignored = 0.0; !memory_.has_contact_place && touches(i, a_B, j, ignored)) return true;
+  if (double ignored = 0.0; !memory_.has_contact_place) {
+    if (const auto near = near_facets(i, a_B, j, ignored); near && touches(*near)) return true;
+  }
   if (memory_.has_contact_place && options_.holes == HoleMode::Exact) {
     const double reach_mm = options_.tolerance_mm;
     if (const auto near = pair_.b.nearest_within(on_a_B, reach_mm)) {
@@ -104,7 +106,6 @@ bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint
   const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B, reach_squared);
   if (near.distance_squared_mm2 > reach_squared) return false;
   note_method(i, j);
-  is_suspect_ = true;
   touch(i, on_a_B, j, near.point);
   return true;
 }
@@ -115,45 +116,8 @@ bool Judge::touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint
   const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A, reach_squared);
   if (near.distance_squared_mm2 > reach_squared) return false;
   note_method(i, j);
-  is_suspect_ = true;
   touch(i, placement_ * near.point, j, pair_.X_BA * on_b_A);
   return true;
-}
-
-void Judge::look_for_contact() {
-  if (seat_touches()) return;
-  const double tolerance_mm = options_.tolerance_mm;
-  double apart = std::numeric_limits<double>::infinity();
-  const auto visit_facets = [&](const BvhNode& leaf_a, const BvhNode& leaf_b, const auto& found) {
-    return for_each_near_pair(
-        pair_, placement_, leaf_a, leaf_b, tolerance_mm, apart,
-        [this](const ModelTriangle& t) { return takes_part(t); },
-        [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-          return !found(i, a_B, j);
-        });
-  };
-  scratch_.leaves.clear();
-  for_each_leaf_pair(
-      pair_, scratch_, counters_, [](const BvhNode&, const BvhNode&) { return true; },
-      [&](double gap_mm) {
-        if (gap_mm > tolerance_mm) apart = std::min(apart, gap_mm);
-        return gap_mm <= tolerance_mm;
-      },
-      [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-        scratch_.leaves.push_back({&leaf_a, &leaf_b});
-        return !may_face(leaf_a, leaf_b) ||
-               visit_facets(leaf_a, leaf_b,
-                            [this](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                              return faces_lie_on_each_other(i, a_B, j);
-                            });
-      });
-  for (std::size_t n = 0; n < scratch_.leaves.size() && result_.verdict == Verdict::Clear; ++n) {
-    visit_facets(*scratch_.leaves[n].a, *scratch_.leaves[n].b,
-                 [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-                   return touches(i, a_B, j, apart);
-                 });
-  }
-  if (result_.verdict == Verdict::Clear) result_.gap_mm = std::max(apart, tolerance_mm);
 }
 
 bool Judge::seat_touches() {
@@ -199,51 +163,24 @@ bool Judge::faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, 
   const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
   if (!middle || !is_between_faces(i, j, *middle)) return false;
   note_method(i, j);
-  is_suspect_ = true;
   return true;
 }
 
-bool Judge::touches(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j, double& apart) {
-  const ModelTriangle& a = pair_.a.triangles()[i];
-  const ModelTriangle& b = pair_.b.triangles()[j];
-  ++counters_.triangle_tests;
-  const double slack = a.slack_mm + b.slack_mm;
-  const double margin = options_.tolerance_mm + slack;
-  const double between = apart_by_planes(a, a_B, b);
-  if (between > options_.tolerance_mm) {
-    apart = std::min(apart, between);
-    return false;
-  }
-  if (const double gap = box_gap(a_B.corners_B, b.corners); gap > margin) {
-    apart = std::min(apart, gap - slack);
-    return false;
-  }
-  note_method(i, j);
-  if (const double gap = std::max(beyond_edges(b.corners, b.normal, a_B.corners_B),
-                                  beyond_edges(a_B.corners_B, a_B.normal_B, b.corners));
-      gap > margin) {
-    apart = std::min(apart, gap - slack);
-    return false;
-  }
-  const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
-  const double gap = std::sqrt(closest.distance_squared_mm2);
-  if (gap > margin) {
-    apart = std::min(apart, gap - slack);
-    return false;
-  }
-  is_suspect_ = true;
-  if (slack == 0.0) {
-    touch(i, closest.on_a, j, closest.on_b);
+bool Judge::touches(const NarrowScratch::FacetPair& near) {
+  if (near.is_flat) {
+    touch(near.a, near.on_a_B, near.b, near.on_b);
     return true;
   }
-  if (is_between_faces(i, j, closest.on_b)) return true;
-  const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
-  apart = options_.tolerance_mm;
+  if (is_between_faces(near.a, near.b, near.on_b)) return true;
+  const ModelTriangle& a = pair_.a.triangles()[near.a];
+  const ModelTriangle& b = pair_.b.triangles()[near.b];
+  const Eigen::Vector3d middle = 0.5 * (near.on_a_B + near.on_b);
   if (no_touch_from_.knows(a.face, b.face, middle)) return false;
-  if (const auto place = find_touch(pair_, middle, i, j, options_.tolerance_mm, reach_mm(a, b))) {
+  if (const auto place =
+          find_touch(pair_, middle, near.a, near.b, options_.tolerance_mm, reach_mm(a, b))) {
     touch(std::max(0.0, -place->depth_a_mm) + std::max(0.0, -place->depth_b_mm), place->point_B);
-    memory_.contact_a = i;
-    memory_.contact_b = j;
+    memory_.contact_a = near.a;
+    memory_.contact_b = near.b;
     memory_.has_contact_place = false;
     return true;
   }

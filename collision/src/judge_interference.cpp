@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "judge.h"
-#include "kept_off.h"
 #include "triangle_pair.h"
 
 namespace dowel {
@@ -29,13 +28,6 @@ Corners shifted(const Corners& corners, const Eigen::Vector3d& by) {
   return {corners[0] + by, corners[1] + by, corners[2] + by};
 }
 
-/// Lower bound of a box's height before a plane that is placed beside it.
-double height_of(const Obb& box, const Pose& X_OP, const PlaneSurface& plane) {
-  const Eigen::Vector3d normal_O = X_OP.rotation() * plane.normal;
-  const double reach = (box.axes.transpose() * normal_O).cwiseAbs().dot(box.half_extents_mm);
-  return normal_O.dot(box.center - X_OP * plane.origin) - reach;
-}
-
 }  // namespace
 
 bool Judge::knows_cores() {
@@ -51,6 +43,8 @@ bool Judge::knows_cores() {
 }
 
 bool Judge::cores_overlap() {
+  if (cores_were_asked_) return false;
+  cores_were_asked_ = true;
   if (!pair_.reliefs_B.empty() || options_.holes == HoleMode::Paper) return false;
   const auto overlap = find_overlap(pair_.a.cores(), pair_.b.cores(), pair_.X_BA, erosion_mm_);
   return overlap && take_overlap(*overlap);
@@ -101,68 +95,47 @@ bool Judge::knows_ball() {
   return true;
 }
 
-void Judge::look_for_interference() {
-  if (memory_.crossing_a != PairMemory::kNone &&
-      crosses(memory_.crossing_a, placement_ * pair_.a.triangles()[memory_.crossing_a],
-              memory_.crossing_b)) {
-    return;
-  }
-  const KeptOff kept_off_a(pair_.a, options_.tolerance_mm, [&](const PlaneSurface& plane) {
-    return height_of(pair_.obb_b, pair_.X_BA, plane);
-  });
-  const KeptOff kept_off_b(pair_.b, options_.tolerance_mm, [&](const PlaneSurface& plane) {
-    return height_of(pair_.obb_a, X_AB_, plane);
-  });
-  for_each_leaf_pair(
-      pair_, scratch_, counters_,
-      [&](const BvhNode& a, const BvhNode& b) {
-        return !kept_off_a.contains(a) && !kept_off_b.contains(b);
-      },
-      [&](double gap_mm) { return gap_mm <= options_.tolerance_mm; },
-      [&](const BvhNode& leaf_a, const BvhNode& leaf_b) {
-        double ignored = 0.0;
-        return for_each_near_pair(
-            pair_, placement_, leaf_a, leaf_b, options_.tolerance_mm, ignored,
-            [this](const ModelTriangle& t) { return takes_part(t); },
-            [&](std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
-              if (!crosses(i, a_B, j)) return true;
-              memory_.crossing_a = i;
-              memory_.crossing_b = j;
-              return false;
-            });
-      });
+bool Judge::still_crosses() {
+  if (memory_.crossing_a == PairMemory::kNone) return false;
+  const PlacedTriangle a_B = placement_ * pair_.a.triangles()[memory_.crossing_a];
+  double ignored = 0.0;
+  const auto near = near_facets(memory_.crossing_a, a_B, memory_.crossing_b, ignored);
+  if (near && crosses(*near, a_B)) return true;
+  memory_.crossing_a = PairMemory::kNone;
+  return false;
 }
 
-bool Judge::crosses(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j) {
+std::optional<Segment> Judge::eroded_crossing(const PlacedTriangle& a_B,
+                                              const ModelTriangle& b) const {
+  return crossing_segment(shifted(a_B.corners_B, -erosion_mm_ * a_B.normal_B), a_B.normal_B,
+                          shifted(b.corners, -erosion_mm_ * b.normal), b.normal);
+}
+
+bool Judge::crosses_in_the_middle(std::uint32_t i, const PlacedTriangle& a_B, std::uint32_t j,
+                                  int& tries) {
   const ModelTriangle& a = pair_.a.triangles()[i];
   const ModelTriangle& b = pair_.b.triangles()[j];
-  ++counters_.triangle_tests;
-  const double slack = a.slack_mm + b.slack_mm;
-  const double margin = options_.tolerance_mm + slack;
-  if (apart_by_planes(a, a_B, b) > options_.tolerance_mm ||
-      box_gap(a_B.corners_B, b.corners) > margin) {
-    return false;
-  }
+  const auto crossing = eroded_crossing(a_B, b);
+  if (!crossing) return false;
+  --tries;
   note_method(i, j);
+  return try_start(0.5 * (crossing->start + crossing->end), i, j, reach_mm(a, b));
+}
+
+bool Judge::crosses(const NarrowScratch::FacetPair& near, const PlacedTriangle& a_B) {
+  const ModelTriangle& a = pair_.a.triangles()[near.a];
+  const ModelTriangle& b = pair_.b.triangles()[near.b];
   const double reach = reach_mm(a, b);
-  const auto crossing =
-      crossing_segment(shifted(a_B.corners_B, -erosion_mm_ * a_B.normal_B), a_B.normal_B,
-                       shifted(b.corners, -erosion_mm_ * b.normal), b.normal);
-  if (crossing) {
+  if (const auto crossing = eroded_crossing(a_B, b)) {
     for (const double fraction : kFractions) {
       const Eigen::Vector3d start = crossing->start + fraction * (crossing->end - crossing->start);
-      if (try_start(start, i, j, reach)) return true;
+      if (try_start(start, near.a, near.b, reach)) return true;
     }
   }
-  if (slack == 0.0 || beyond_edges(b.corners, b.normal, a_B.corners_B) > margin ||
-      beyond_edges(a_B.corners_B, a_B.normal_B, b.corners) > margin) {
-    return false;
-  }
-  const ClosestPair closest = closest_points(a_B.corners_B, a_B.normal_B, b.corners, b.normal);
-  if (closest.distance_squared_mm2 > margin * margin) return false;
-  const Eigen::Vector3d middle = 0.5 * (closest.on_a + closest.on_b);
+  if (near.is_flat) return false;
+  const Eigen::Vector3d middle = 0.5 * (near.on_a_B + near.on_b);
   if (no_witness_from_.knows(a.face, b.face, middle)) return false;
-  if (try_start(middle, i, j, reach)) return true;
+  if (try_start(middle, near.a, near.b, reach)) return true;
   no_witness_from_.add(a.face, b.face, middle);
   return false;
 }
@@ -177,7 +150,10 @@ double Judge::reach_mm(const ModelTriangle& a, const ModelTriangle& b) const {
 
 bool Judge::try_start(const Eigen::Vector3d& start_B, std::uint32_t i, std::uint32_t j,
                       double reach) {
-  return try_witness(find_witness(pair_, start_B, i, j, erosion_mm_, reach));
+  if (!try_witness(find_witness(pair_, start_B, i, j, erosion_mm_, reach))) return false;
+  memory_.crossing_a = i;
+  memory_.crossing_b = j;
+  return true;
 }
 
 bool Judge::try_witness(const std::optional<Witness>& witness) {

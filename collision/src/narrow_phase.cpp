@@ -31,20 +31,7 @@ double gap_below(double limit_mm, const ModelTriangle& a, const PlacedTriangle& 
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters) {
   Judge judge(pair, options, memory, scratch, counters);
-  return judge.recall() ? judge.result() : judge_afresh(pair, options, memory, scratch, counters);
-}
-
-std::optional<PairVerdict> recall(const ModelPair& pair, const QueryOptions& options,
-                                  PairMemory& memory, NarrowScratch& scratch,
-                                  QueryCounters& counters) {
-  Judge judge(pair, options, memory, scratch, counters);
-  if (!judge.recall()) return std::nullopt;
-  return judge.result();
-}
-
-PairVerdict judge_afresh(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
-                         NarrowScratch& scratch, QueryCounters& counters) {
-  return Judge(pair, options, memory, scratch, counters).decide();
+  return judge.recall() ? judge.result() : judge.decide();
 }
 
 PairVerdict judge_by_brute_force(const ModelPair& pair, const QueryOptions& options,

@@ -28,9 +28,19 @@ struct NarrowScratch {
   struct LeafPair {
     const BvhNode* a;
     const BvhNode* b;
+    bool may_cross;  ///< neither is kept off the other body
+  };
+  /// Facets of A and B within the tolerance of each other and what their faces stand off them.
+  struct FacetPair {
+    std::uint32_t a;
+    std::uint32_t b;
+    bool is_flat;  ///< neither stands for a curved boundary
+    Eigen::Vector3d on_a_B;
+    Eigen::Vector3d on_b;
   };
   std::vector<NodePair> stack;
-  std::vector<LeafPair> leaves;         ///< that are near each other
+  std::vector<LeafPair> leaves;  ///< that are near each other
+  std::vector<FacetPair> facets;
   std::vector<ThreadRelief> reliefs_A;  ///< of a pair, in the frame of A
 };
 
@@ -96,16 +106,6 @@ struct PairMemory {
 /// found by points stored deep inside each component.
 PairVerdict judge(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
                   NarrowScratch& scratch, QueryCounters& counters);
-
-/// What is remembered, tested at the new pose: the verdict where that alone gives it, at a small
-/// part of the cost, else nothing.
-std::optional<PairVerdict> recall(const ModelPair& pair, const QueryOptions& options,
-                                  PairMemory& memory, NarrowScratch& scratch,
-                                  QueryCounters& counters);
-
-/// The verdict, after `recall` gave none.
-PairVerdict judge_afresh(const ModelPair& pair, const QueryOptions& options, PairMemory& memory,
-                         NarrowScratch& scratch, QueryCounters& counters);
 
 /// The same by looking at all pairs of facets. Reference for tests.
 PairVerdict judge_by_brute_force(const ModelPair& pair, const QueryOptions& options,

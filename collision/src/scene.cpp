@@ -10,7 +10,7 @@
 #include "dowel/collision/silhouette.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
-#include "narrow_phase.h"
+#include "judge.h"
 #include "scene_impl.h"
 
 namespace dowel {
@@ -227,25 +227,27 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, Candidate&
     verdict.witness_W = bodies[candidate.id.value].X_WB * verdict.witness_W;
     return verdict;
   };
-  // What met last time is likely to meet in the same way, whatever their boxes do.
-  const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
-  if (met) {
-    const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
-    if (const auto known = recall(placed.pair, options, candidate.memory, scratch, counters)) {
-      return in_world(*known);
-    }
-  }
-  const BoxSeparation boxes =
-      separate(mover.obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
-  candidate.plane = static_cast<std::int8_t>(boxes.plane);
-  if (boxes.plane >= 0) {
+  const auto kept_apart = [&]() -> std::optional<PairVerdict> {
+    const BoxSeparation boxes =
+        separate(mover.obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
+    candidate.plane = static_cast<std::int8_t>(boxes.plane);
+    if (boxes.plane < 0) return {};
     PairVerdict clear;
     clear.gap_mm = boxes.gap_mm;
     return clear;
+  };
+  // What met last time is likely to meet in the same way, whatever their boxes do.
+  const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
+  if (!met) {
+    if (const auto clear = kept_apart()) return *clear;
   }
   const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
-  const auto judged = met ? judge_afresh : judge;
-  return in_world(judged(placed.pair, options, candidate.memory, scratch, counters));
+  Judge judge(placed.pair, options, candidate.memory, scratch, counters);
+  if (judge.recall()) return in_world(judge.result());
+  if (met) {
+    if (const auto clear = kept_apart()) return *clear;
+  }
+  return in_world(judge.decide());
 }
 
 bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
