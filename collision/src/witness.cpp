@@ -23,6 +23,12 @@ constexpr double kCoarseGrowth = 8.0;
 constexpr double kFineGrowth = 1.05;
 constexpr int kDeepenings = 8;
 
+/// What is asked for first about a place, in wanted depths: whether the boundary is as near as this.
+constexpr double kUsualDepths = 2.0;
+
+/// Rounding of a depth that was reckoned at the same place before.
+constexpr double kKnownDepthSlack = 1.0e-6;
+
 constexpr std::size_t kMaxConstraints = 4;
 constexpr int kRounds = 12;
 constexpr int kCoarseRounds = 1;  // of making a witness deeper for later moves: only where easy
@@ -55,6 +61,9 @@ class Search {
 
   double enough_mm() const { return depth_mm_ - kDepthSlack * std::abs(depth_mm_); }
   bool is_for_contact() const { return depth_mm_ < 0.0; }
+
+  /// Places that were put at the depth are hardly further from the nearest boundary.
+  double usual_mm() const { return kUsualDepths * std::abs(depth_mm_); }
 
   void add_triangle(Side side, std::uint32_t triangle) {
     const CollisionModel& m = model(side);
@@ -133,25 +142,20 @@ class Search {
   };
   /// Depth of `p` in one solid and the constraint that its nearest boundary stands for.
   Reading read(Side side, const Eigen::Vector3d& p) const {
-    return reading(side, p, model(side).nearest(side == Side::A ? X_AB_ * p : p));
+    return reading(side, p, model(side).nearest(in_frame(side, p)));
   }
 
-  /// The same where the boundary is too near for a witness; nothing elsewhere.
-  std::optional<Reading> read_if_near(Side side, const Eigen::Vector3d& p) const {
-    const auto near = model(side).nearest_within(side == Side::A ? X_AB_ * p : p, enough_mm());
+  /// The same where the boundary is nearer than `radius_mm`, at little cost; nothing elsewhere.
+  std::optional<Reading> read_within(Side side, const Eigen::Vector3d& p, double radius_mm) const {
+    const auto near = model(side).nearest_within(in_frame(side, p), radius_mm);
     if (!near) return std::nullopt;
     return reading(side, p, *near);
   }
 
-  Reading reading(Side side, const Eigen::Vector3d& p, const NearestPoint& near) const {
-    const Face& face = model(side).face(model(side).triangles()[near.triangle].face);
-    Constraint constraint{side, near.on_face && is_exact(face) ? &face : nullptr,
-                          side == Side::A ? pair_.X_BA * near.point : near.point,
-                          Eigen::Vector3d::UnitZ()};
-    const Eigen::Vector3d inward = near.inside ? Eigen::Vector3d(p - constraint.point_B)
-                                               : Eigen::Vector3d(constraint.point_B - p);
-    if (inward.squaredNorm() > 0.0) constraint.inward_B = inward.normalized();
-    return {near.inside ? near.distance_mm : -near.distance_mm, constraint};
+  /// The same where the depth is known.
+  Reading read_at_depth(Side side, const Eigen::Vector3d& p, double depth_mm) const {
+    const auto near = read_within(side, p, depth_mm * (1.0 + kKnownDepthSlack));
+    return near ? *near : read(side, p);
   }
 
   /// False where nothing new is learned: the face is known, or there is no room for another.
@@ -191,6 +195,21 @@ class Search {
  private:
   const CollisionModel& model(Side side) const { return side == Side::A ? pair_.a : pair_.b; }
 
+  Eigen::Vector3d in_frame(Side side, const Eigen::Vector3d& p) const {
+    return side == Side::A ? X_AB_ * p : p;
+  }
+
+  Reading reading(Side side, const Eigen::Vector3d& p, const NearestPoint& near) const {
+    const Face& face = model(side).face(model(side).triangles()[near.triangle].face);
+    Constraint constraint{side, near.on_face && is_exact(face) ? &face : nullptr,
+                          side == Side::A ? pair_.X_BA * near.point : near.point,
+                          Eigen::Vector3d::UnitZ()};
+    const Eigen::Vector3d inward = near.inside ? Eigen::Vector3d(p - constraint.point_B)
+                                               : Eigen::Vector3d(constraint.point_B - p);
+    if (inward.squaredNorm() > 0.0) constraint.inward_B = inward.normalized();
+    return {near.inside ? near.distance_mm : -near.distance_mm, constraint};
+  }
+
   DepthAndSlope depth_behind(const Constraint& constraint, const Eigen::Vector3d& p) const {
     if (constraint.face == nullptr) {
       return {constraint.inward_B.dot(p - constraint.point_B), constraint.inward_B};
@@ -213,30 +232,32 @@ class Search {
 /// Runs rounds of settling and asking from `start` on.
 std::optional<Witness> run(Search& search, const Eigen::Vector3d& start, double reach_mm,
                            int rounds = kRounds) {
+  constexpr std::array kSides{Side::A, Side::B};
   Eigen::Vector3d p = start;
   for (int round = 0; round < rounds; ++round) {
     if (!search.settle(p) || (p - start).norm() > reach_mm || search.in_relief(p)) {
       return std::nullopt;
     }
-    // Most starts are refuted by a boundary near by, which is found at little cost.
+    // Most places are as deep as they were put or too near a boundary, which is found at little
+    // cost. Only where neither is, far ones are sought.
+    std::array<std::optional<Search::Reading>, 2> readings;
+    bool is_short = false;
     bool learned = false;
-    bool is_near = false;
-    for (const Side side : {Side::A, Side::B}) {
-      if (search.is_for_contact()) break;
-      if (const auto near = search.read_if_near(side, p)) {
-        is_near = true;
-        learned = search.add(near->nearest) || learned;
-      }
+    const auto take = [&](const Search::Reading& reading) {
+      if (reading.depth_mm >= search.enough_mm()) return;
+      is_short = true;
+      learned = search.add(reading.nearest) || learned;
+    };
+    for (std::size_t i = 0; i < 2; ++i) {
+      readings[i] = search.read_within(kSides[i], p, search.usual_mm());
+      if (readings[i]) take(*readings[i]);
     }
-    if (!is_near) {
-      const Search::Reading in_a = search.read(Side::A, p);
-      const Search::Reading in_b = search.read(Side::B, p);
-      const bool is_in_a = in_a.depth_mm >= search.enough_mm();
-      const bool is_in_b = in_b.depth_mm >= search.enough_mm();
-      if (is_in_a && is_in_b) return Witness{p, in_a.depth_mm, in_b.depth_mm};
-      if (!is_in_a) learned = search.add(in_a.nearest) || learned;
-      if (!is_in_b) learned = search.add(in_b.nearest) || learned;
+    for (std::size_t i = 0; i < 2 && !is_short; ++i) {
+      if (readings[i]) continue;
+      readings[i] = search.read(kSides[i], p);
+      take(*readings[i]);
     }
+    if (!is_short) return Witness{p, readings[0]->depth_mm, readings[1]->depth_mm};
     if (!learned) return std::nullopt;
   }
   return std::nullopt;
@@ -270,7 +291,7 @@ std::optional<Witness> test_witness(const ModelPair& pair, const Eigen::Vector3d
   const Search search(pair, depth_mm);
   if (search.in_relief(point_B)) return std::nullopt;
   for (const Side side : {Side::A, Side::B}) {
-    if (search.read_if_near(side, point_B)) return std::nullopt;
+    if (search.read_within(side, point_B, search.enough_mm())) return std::nullopt;
   }
   const double depth_a = search.read(Side::A, point_B).depth_mm;
   if (depth_a < search.enough_mm()) return std::nullopt;
@@ -287,8 +308,8 @@ Witness deepen(const ModelPair& pair, const Witness& witness, bool thoroughly) {
     for (int step = 0; step < kDeepenings; ++step) {
       const double depth_mm = std::min(best.depth_a_mm, best.depth_b_mm);
       Search search(pair, growth * depth_mm);
-      search.add(search.read(Side::A, best.point_B).nearest);
-      search.add(search.read(Side::B, best.point_B).nearest);
+      search.add(search.read_at_depth(Side::A, best.point_B, best.depth_a_mm).nearest);
+      search.add(search.read_at_depth(Side::B, best.point_B, best.depth_b_mm).nearest);
       const auto deeper =
           run(search, best.point_B, 8.0 * growth * depth_mm, thoroughly ? kRounds : kCoarseRounds);
       if (!deeper) break;
