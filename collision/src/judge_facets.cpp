@@ -15,11 +15,10 @@ namespace {
 /// that are no deeper in each other than the tolerance have many.
 constexpr int kEarlyCrossings = 4;
 
-/// Lower bound of a box's height before a plane that is placed beside it.
-double height_of(const Obb& box, const Pose& X_OP, const PlaneSurface& plane) {
-  const Eigen::Vector3d normal_O = X_OP.rotation() * plane.normal;
-  const double reach = (box.axes.transpose() * normal_O).cwiseAbs().dot(box.half_extents_mm);
-  return normal_O.dot(box.center - X_OP * plane.origin) - reach;
+/// Lower bound of a box's height before a plane.
+double height_of(const Obb& box, const PlaneSurface& plane) {
+  const double reach = (box.axes.transpose() * plane.normal).cwiseAbs().dot(box.half_extents_mm);
+  return plane.normal.dot(box.center - plane.origin) - reach;
 }
 
 }  // namespace
@@ -42,12 +41,11 @@ void Judge::list_near_leaves(bool may_interfere, double& apart) {
   KeptOff kept_off_a;
   KeptOff kept_off_b;
   if (may_interfere) {
-    kept_off_a = KeptOff(pair_.a, tolerance_mm, [&](const PlaneSurface& plane) {
-      return height_of(pair_.obb_b, pair_.X_BA, plane);
-    });
-    kept_off_b = KeptOff(pair_.b, tolerance_mm, [&](const PlaneSurface& plane) {
-      return height_of(pair_.obb_a, X_AB_, plane);
-    });
+    const auto heights = [](const Obb& box) {
+      return [box](const PlaneSurface& plane) { return height_of(box, plane); };
+    };
+    kept_off_a = KeptOff(pair_.a, tolerance_mm, heights(transformed(X_AB_, pair_.obb_b)));
+    kept_off_b = KeptOff(pair_.b, tolerance_mm, heights(transformed(pair_.X_BA, pair_.obb_a)));
   }
   const auto may_cross = [&](const BvhNode& a, const BvhNode& b) {
     return may_interfere && !kept_off_a.contains(a) && !kept_off_b.contains(b);

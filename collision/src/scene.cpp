@@ -167,10 +167,10 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
     mover.element = body(id).element.get();
     mover.radius_mm = mover.element->obb().half_extents_mm.norm();
     mover.obb_W = transformed(X_WB, mover.element->obb());
+    mover.axes_are_old = false;
   }
   const Eigen::Vector3d center_W = X_WB * mover.element->obb().center;
-  // Most moves do not turn.
-  const bool is_turned = X_WB.rotation().coeffs() != mover.X_WB.rotation().coeffs();
+  const Eigen::Vector4d turn = X_WB.rotation().coeffs() - mover.X_WB.rotation().coeffs();
   double step_mm = 0.0;
   if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes) {
     mover.tolerance_mm = options.tolerance_mm;
@@ -178,24 +178,21 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
     mover.candidates.clear();
     mover.listed_until = -1.0;
   } else if (mover.listed_until >= 0.0) {
-    // No point is further from the box's centre than a corner; turned by an angle it moves by twice
-    // the sine of half of that.
-    step_mm = (center_W - mover.obb_W.center).norm() + kWayRounding_mm;
-    if (is_turned) {
-      const Eigen::Quaterniond turn = mover.X_WB.rotation().conjugate() * X_WB.rotation();
-      step_mm += 2.0 * turn.vec().norm() * mover.radius_mm;
-    }
+    // No point is further from the box's centre than a corner. Turned by an angle it moves by twice
+    // the sine of half of that, and the quaternions differ by twice the sine of a quarter.
+    step_mm = (center_W - mover.obb_W.center).norm() + 2.0 * turn.norm() * mover.radius_mm +
+              kWayRounding_mm;
     mover.way_mm += step_mm;
   }
   mover.X_WB = X_WB;
   mover.obb_W.center = center_W;
-  if (is_turned) mover.obb_W.axes = X_WB.rotation_matrix() * mover.element->obb().axes;
+  mover.axes_are_old = mover.axes_are_old || turn != Eigen::Vector4d::Zero();
   if (mover.way_mm >= mover.listed_until) find_candidates(mover, step_mm);
   return mover;
 }
 
 void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
-  const Obb& obb_W = mover.obb_W;
+  const Obb& obb_W = mover.box_W();
   const double room_mm = std::min(kStepsOfRoom * step_mm, kSizesOfRoom * mover.radius_mm);
   const double margin_mm = mover.tolerance_mm + room_mm;
   const Silhouette outline = silhouette(obb_W);
@@ -205,10 +202,11 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   auto old = old_candidates.begin();
   for (const std::uint32_t other : found) {
     if (other == mover.id.value) continue;
-    const Obb other_W = bodies[other].obb_W();
-    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
     while (old != old_candidates.end() && old->id.value < other) ++old;
-    if (old != old_candidates.end() && old->id.value == other) {
+    const bool is_known = old != old_candidates.end() && old->id.value == other;
+    const Obb other_W = is_known ? old->obb_W : bodies[other].obb_W();
+    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
+    if (is_known) {
       mover.candidates.push_back(*old);
       mover.candidates.back().clear_until -= mover.way_mm;
     } else {
@@ -220,7 +218,7 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   mover.clear_until = 0.0;
 }
 
-PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, Candidate& candidate,
+PairVerdict CollisionScene::Impl::judge_candidate(Mover& mover, Candidate& candidate,
                                                   const QueryOptions& options) {
   ++counters.box_tests;
   const auto in_world = [&](PairVerdict verdict) {
@@ -229,7 +227,7 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, Candidate&
   };
   const auto kept_apart = [&]() -> std::optional<PairVerdict> {
     const BoxSeparation boxes =
-        separate(mover.obb_W, candidate.obb_W, options.tolerance_mm, candidate.plane);
+        separate(mover.box_W(), candidate.obb_W, options.tolerance_mm, candidate.plane);
     candidate.plane = static_cast<std::int8_t>(boxes.plane);
     if (boxes.plane < 0) return {};
     PairVerdict clear;
@@ -250,12 +248,11 @@ PairVerdict CollisionScene::Impl::judge_candidate(const Mover& mover, Candidate&
   return in_world(judge.decide());
 }
 
-bool CollisionScene::Impl::check_mover(Mover& mover, const QueryOptions& options) {
+bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryOptions& options) {
   if (mover.way_mm < mover.clear_until) return true;
   double clear_until = mover.listed_until;
   for (Candidate& candidate : mover.candidates) {
-    const Body& other = bodies[candidate.id.value];
-    if (other.is_moving) {
+    if (!is_alone && bodies[candidate.id.value].is_moving) {
       clear_until = 0.0;  // who moves along may be another one next time
       continue;
     }
@@ -301,7 +298,7 @@ std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> movin
   const Impl::MovingMark mark(*impl_, moving);
   for (std::size_t i = 0; i < moving.size(); ++i) {
     Impl::Mover& mover = impl_->mover_at(moving[i], poses[i], options);
-    if (!impl_->check_mover(mover, options)) break;
+    if (!impl_->check_mover(mover, moving.size() == 1, options)) break;
   }
   return impl_->verdicts;
 }

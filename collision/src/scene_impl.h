@@ -56,7 +56,8 @@ struct CollisionScene::Impl {
     const CollisionElement* element = nullptr;
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
-    Obb obb_W;
+    Obb obb_W;  // but for the axes while `axes_are_old`
+    bool axes_are_old = false;
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
@@ -64,6 +65,13 @@ struct CollisionScene::Impl {
     HoleMode holes = HoleMode::Exact;
     std::uint64_t last_use = 0;
     std::vector<Candidate> candidates;  // by id
+
+    /// The box at the pose asked about. Most moves do not need its axes.
+    const Obb& box_W() {
+      if (axes_are_old) obb_W.axes = X_WB.rotation_matrix() * element->obb().axes;
+      axes_are_old = false;
+      return obb_W;
+    }
   };
 
   class PairSweep;
@@ -114,11 +122,12 @@ struct CollisionScene::Impl {
   void find_candidates(Mover& mover, double step_mm);
 
   /// Verdict on a mover and one of its candidates; witness in the world.
-  PairVerdict judge_candidate(const Mover& mover, Candidate& candidate,
+  PairVerdict judge_candidate(Mover& mover, Candidate& candidate,
                               const QueryOptions& options);
 
-  /// Appends the verdicts of one mover to `verdicts`; false once `first_only` ends the query.
-  bool check_mover(Mover& mover, const QueryOptions& options);
+  /// Appends the verdicts of one mover, which may move along with others, to `verdicts`; false once
+  /// `first_only` ends the query.
+  bool check_mover(Mover& mover, bool is_alone, const QueryOptions& options);
 
   /// Forgets what is remembered of all bodies but `id`, whose surroundings are as they were.
   void forget_all_but(BodyId id);

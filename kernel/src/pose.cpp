@@ -53,7 +53,11 @@ Pose Pose::canonical() const {
 }
 
 Pose Pose::operator*(const Pose& other) const {
-  return {rotation_ * other.rotation_, *this * other.translation_};
+  Pose result;
+  result.rotation_ = rotation_ * other.rotation_;
+  result.translation_ = *this * other.translation_;
+  if (std::abs(result.rotation_.squaredNorm() - 1.0) > kRoundedOff) result.rotation_.normalize();
+  return result;
 }
 
 Pose interpolate(const Pose& from, const Pose& to, double s) {
