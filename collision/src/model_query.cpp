@@ -97,6 +97,11 @@ struct Best {
     const double height = facet.normal.dot(p - facet.corners[0]);
     const double above = std::max(std::abs(height) - facet.normal_slack_mm, 0.0);
     if (above * above > place.distance_squared_mm2) return;
+    const auto& [a, b, c] = facet.corners;
+    const double beside =
+        (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).maxCoeff() -
+        facet.slack_mm;
+    if (beside > 0.0 && beside * beside > place.distance_squared_mm2) return;
     const FacePoint candidate = nearest_on_patch(model, t, p, place.distance_squared_mm2);
     if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
       place = candidate;
