@@ -218,34 +218,35 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   mover.clear_until = 0.0;
 }
 
-PairVerdict CollisionScene::Impl::judge_candidate(Mover& mover, Candidate& candidate,
-                                                  const QueryOptions& options) {
+std::optional<PairVerdict> CollisionScene::Impl::meet(Mover& mover, Candidate& candidate,
+                                                      const QueryOptions& options) {
   ++counters.box_tests;
-  const auto in_world = [&](PairVerdict verdict) {
-    verdict.witness_W = bodies[candidate.id.value].X_WB * verdict.witness_W;
-    return verdict;
+  const auto stay_clear = [&](double gap_mm) {
+    candidate.clear_until = mover.way_mm + gap_mm - options.tolerance_mm;
   };
-  const auto kept_apart = [&]() -> std::optional<PairVerdict> {
+  const auto are_kept_apart = [&] {
     const BoxSeparation boxes =
         separate(mover.box_W(), candidate.obb_W, options.tolerance_mm, candidate.plane);
     candidate.plane = static_cast<std::int8_t>(boxes.plane);
-    if (boxes.plane < 0) return {};
-    PairVerdict clear;
-    clear.gap_mm = boxes.gap_mm;
-    return clear;
+    if (boxes.plane >= 0) stay_clear(boxes.gap_mm);
+    return boxes.plane >= 0;
   };
   // What met last time is likely to meet in the same way, whatever their boxes do.
   const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
-  if (!met) {
-    if (const auto clear = kept_apart()) return *clear;
-  }
+  if (!met && are_kept_apart()) return {};
   const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
   Judge judge(placed.pair, options, candidate.memory, scratch, counters);
-  if (judge.recall()) return in_world(judge.result());
-  if (met) {
-    if (const auto clear = kept_apart()) return *clear;
+  if (!judge.recall()) {
+    if (met && are_kept_apart()) return {};
+    judge.decide();
   }
-  return in_world(judge.decide());
+  PairVerdict verdict = judge.result();
+  if (verdict.verdict == Verdict::Clear) {
+    stay_clear(verdict.gap_mm);
+    return {};
+  }
+  verdict.witness_W = bodies[candidate.id.value].X_WB * verdict.witness_W;
+  return verdict;
 }
 
 bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryOptions& options) {
@@ -256,20 +257,16 @@ bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryO
       clear_until = 0.0;  // who moves along may be another one next time
       continue;
     }
-    if (mover.way_mm < candidate.clear_until) {
-      clear_until = std::min(clear_until, candidate.clear_until);
-      continue;
-    }
-    const PairVerdict verdict = judge_candidate(mover, candidate, options);
-    if (verdict.verdict == Verdict::Clear) {
-      candidate.clear_until = mover.way_mm + verdict.gap_mm - options.tolerance_mm;
+    std::optional<PairVerdict> met;
+    if (mover.way_mm >= candidate.clear_until) met = meet(mover, candidate, options);
+    if (!met) {
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }
     clear_until = 0.0;
-    const bool is_last = options.first_only && verdict.verdict == Verdict::Interference;
+    const bool is_last = options.first_only && met->verdict == Verdict::Interference;
     if (is_last) verdicts.clear();
-    verdicts.push_back({mover.id, candidate.id, verdict});
+    verdicts.push_back({mover.id, candidate.id, *met});
     if (is_last) return false;
   }
   mover.clear_until = clear_until;

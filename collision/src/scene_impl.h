@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -121,9 +122,9 @@ struct CollisionScene::Impl {
   /// Finds the mover's candidates anew, with room for the moves to come.
   void find_candidates(Mover& mover, double step_mm);
 
-  /// Verdict on a mover and one of its candidates; witness in the world.
-  PairVerdict judge_candidate(Mover& mover, Candidate& candidate,
-                              const QueryOptions& options);
+  /// Verdict on a mover and one of its candidates, witness in the world; nothing where the two are
+  /// clear: then the candidate says for how long.
+  std::optional<PairVerdict> meet(Mover& mover, Candidate& candidate, const QueryOptions& options);
 
   /// Appends the verdicts of one mover, which may move along with others, to `verdicts`; false once
   /// `first_only` ends the query.

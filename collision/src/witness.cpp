@@ -23,7 +23,8 @@ constexpr double kCoarseGrowth = 8.0;
 constexpr double kFineGrowth = 1.05;
 constexpr int kDeepenings = 8;
 
-/// What is asked for first about a place, in wanted depths: whether the boundary is as near as this.
+/// What is asked for first about a place, in wanted depths: whether the boundary is as near as
+/// this.
 constexpr double kUsualDepths = 2.0;
 
 /// Rounding of a depth that was reckoned at the same place before.
