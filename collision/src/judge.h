@@ -95,9 +95,15 @@ class Judge {
   void touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
              const Eigen::Vector3d& on_b);
 
-  /// Whether the facets that were in contact still are: at the same place of either, if not, at
-  /// another one, or the same place of a body at another facet of the other one.
+  /// Whether the facets that were in contact still are, or what they slid on.
   bool still_touches();
+
+  /// The same where a place of either is known: that of A on the facet of B, on another one, that of
+  /// B on a facet of A, or else the two facets at another place.
+  bool touches_at_place();
+
+  /// The same where none is.
+  bool touches_again();
 
   /// Whether a place of A's facet `i` is within the tolerance of what facet `j` of B stands for.
   bool touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j);

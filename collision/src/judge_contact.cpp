@@ -75,29 +75,36 @@ void Judge::touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t 
 
 bool Judge::still_touches() {
   if (memory_.contact_a == PairMemory::kNone) return false;
-  const std::uint32_t i = memory_.contact_a;
-  const std::uint32_t j = memory_.contact_b;
-  const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
-  const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
-  if (memory_.has_contact_place && (touches_at(i, on_a_B, j) || touched_at(i, on_b_A, j))) {
-    return true;
-  }
-  const PlacedTriangle a_B = placement_ * pair_.a.triangles()[i];
-  if (faces_lie_on_each_other(i, a_B, j)) return true;
-  if (double ignored = 0.0; !memory_.has_contact_place) {
-    if (const auto near = near_facets(i, a_B, j, ignored); near && touches(*near)) return true;
-  }
-  if (memory_.has_contact_place && options_.holes == HoleMode::Exact) {
-    const double reach_mm = options_.tolerance_mm;
-    if (const auto near = pair_.b.nearest_within(on_a_B, reach_mm)) {
-      if (touches_at(i, on_a_B, near->triangle)) return true;
-    }
-    if (const auto near = pair_.a.nearest_within(on_b_A, reach_mm)) {
-      if (touched_at(near->triangle, on_b_A, j)) return true;
-    }
-  }
+  if (memory_.has_contact_place ? touches_at_place() : touches_again()) return true;
   memory_.contact_a = PairMemory::kNone;
   return false;
+}
+
+bool Judge::touches_at_place() {
+  const std::uint32_t i = memory_.contact_a;
+  const std::uint32_t j = memory_.contact_b;
+  const double reach_mm = options_.tolerance_mm;
+  const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
+  if (touches_at(i, on_a_B, j)) return true;
+  const bool may_leave_facet = options_.holes == HoleMode::Exact;
+  if (may_leave_facet) {
+    const auto near = pair_.b.nearest_within(on_a_B, reach_mm);
+    if (near && touches_at(i, on_a_B, near->triangle)) return true;
+  }
+  const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
+  if (touched_at(i, on_b_A, j)) return true;
+  if (may_leave_facet) {
+    const auto near = pair_.a.nearest_within(on_b_A, reach_mm);
+    if (near && touched_at(near->triangle, on_b_A, j)) return true;
+  }
+  return faces_lie_on_each_other(i, placement_ * pair_.a.triangles()[i], j);
+}
+
+bool Judge::touches_again() {
+  const PlacedTriangle a_B = placement_ * pair_.a.triangles()[memory_.contact_a];
+  double ignored = 0.0;
+  const auto near = near_facets(memory_.contact_a, a_B, memory_.contact_b, ignored);
+  return near && touches(*near);
 }
 
 bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j) {
