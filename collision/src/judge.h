@@ -33,8 +33,8 @@ class RefutedStarts {
   static constexpr double kSame_mm = 1.0e-9;  ///< rounding: the corner is one
 
   struct Entry {
-    std::uint32_t face_a;
-    std::uint32_t face_b;
+    std::uint32_t face_a = 0;
+    std::uint32_t face_b = 0;
     Eigen::Vector3d start_B;
   };
   std::array<Entry, 8> entries_;
@@ -98,8 +98,8 @@ class Judge {
   /// Whether the facets that were in contact still are, or what they slid on.
   bool still_touches();
 
-  /// The same where a place of either is known: that of A on the facet of B, on another one, that of
-  /// B on a facet of A, or else the two facets at another place.
+  /// The same where a place of either is known: that of A on the facet of B, on another one, that
+  /// of B on a facet of A, or else the two facets at another place.
   bool touches_at_place();
 
   /// The same where none is.

@@ -54,11 +54,11 @@ struct CollisionScene::Impl {
   /// point of it has moved since the candidates were found.
   struct Mover {
     BodyId id;
+    bool axes_are_old = false;
     const CollisionElement* element = nullptr;
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
     Obb obb_W;  // but for the axes while `axes_are_old`
-    bool axes_are_old = false;
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
