@@ -12,6 +12,7 @@
 #include "judged_moves.h"
 #include "object_index.h"
 #include "paper_tables.h"
+#include "preparation.h"
 #include "project_commands.h"
 #include "report.h"
 #include "rule_checks.h"
@@ -41,21 +42,33 @@ bool is_wanted(const std::vector<std::string>& wanted, std::string_view name) {
   return wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
 }
 
+/// A list that takes these names alone.
+void add_names(CLI::App& app, const char* option, std::vector<std::string>& given,
+               const char* purpose, std::vector<std::string> names) {
+  app.add_option(option, given, purpose)->delimiter(',')->check(CLI::IsMember(std::move(names)));
+}
+
 void add_options(CLI::App& app, Arguments& given) {
   app.add_flag("--quick", given.is_quick,
                "Few poses, one round; fails where a verdict of dowel is wrong");
-  app.add_option("--only", given.studies, "Studies to run; all if not given")
-      ->delimiter(',')
-      ->check(CLI::IsMember(std::vector<std::string>(kStudies.begin(), kStudies.end())));
+  add_names(app, "--only", given.studies, "Studies to run; all if not given",
+            {kStudies.begin(), kStudies.end()});
   app.add_option("--json", given.json_file, "Writes all figures to this file");
-  app.add_option("--plots", given.plot_folder, "Writes the diagrams into this folder");
-  app.add_option("--poses", given.plan.poses, "Poses of a motion")->capture_default_str();
-  app.add_option("--rounds", given.plan.rounds, "Each pose counts with its fastest round")
+  app.add_option("--plots", given.plot_folder, "Writes the diagrams into this folder")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--poses", given.plan.poses, "Poses of a motion")
+      ->check(CLI::Range(1U, 1'000'000U))
       ->capture_default_str();
-  app.add_option("--methods", given.methods, "dowel,\"FCL OBBRSS\",...")->delimiter(',');
-  app.add_option("--scenes", given.scenes, "a,b,c,d")->delimiter(',');
-  app.add_option("--motions", given.motions, "free,near,insert,fit,contact,contained,tight")
-      ->delimiter(',');
+  app.add_option("--rounds", given.plan.rounds, "Each pose counts with its fastest round")
+      ->check(CLI::Range(1U, 1'000'000U))
+      ->capture_default_str();
+  std::vector<std::string> methods;
+  for (const Method& method : all_methods()) methods.emplace_back(method.name);
+  add_names(app, "--methods", given.methods, "Methods to run", std::move(methods));
+  add_names(app, "--scenes", given.scenes, "Scenes of the moves", {"a", "b", "c", "d"});
+  std::vector<std::string> motions;
+  for (const MotionKind kind : kMotionKinds) motions.emplace_back(to_string(kind));
+  add_names(app, "--motions", given.motions, "Motions to run", std::move(motions));
   app.add_option("--wrong", given.wrong_limit, "Wrong verdicts shown of each scene and motion")
       ->capture_default_str();
 }
@@ -85,6 +98,7 @@ void run_growth(const Arguments& given, const std::vector<Method>& methods, Resu
       results.sizes.push_back(run_size(size_mm, method, given.plan));
     }
   }
+  results.tables.push_back(preparation(methods, given.plan));
 }
 
 Results run_studies(const Arguments& given) {
@@ -93,6 +107,7 @@ Results run_studies(const Arguments& given) {
     if (is_wanted(given.methods, method.name)) methods.push_back(method);
   }
   Results results;
+  results.clock_us = clock_us();
   for (const Method& method : methods) results.methods.emplace_back(method.name);
   if (is_wanted(given.studies, "moves")) run_moves(given, methods, results);
   results.tables = paper_tables(results);

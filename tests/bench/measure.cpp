@@ -34,17 +34,29 @@ std::vector<Pose> every(std::span<const Pose> poses, std::size_t stride) {
 /// Hits are summed up and kept, so that no check is optimised away.
 volatile std::size_t g_hits = 0;
 
+}  // namespace
+
 std::size_t heap_bytes() {
   const struct mallinfo2 info = mallinfo2();
   return info.uordblks + info.hblkhd;
 }
 
-}  // namespace
-
 double processor_us() {
   timespec now{};
   (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1.0e6 * static_cast<double>(now.tv_sec) + 1.0e-3 * static_cast<double>(now.tv_nsec);
+}
+
+double clock_us() {
+  constexpr int kReadings = 10'000;
+  double best_us = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 20; ++round) {
+    const Clock::time_point start = Clock::now();
+    Clock::time_point end = start;
+    for (int i = 0; i < kReadings; ++i) end = Clock::now();
+    best_us = std::min(best_us, elapsed_us(start, end) / kReadings);
+  }
+  return best_us;
 }
 
 Run blank_run(std::size_t poses) {

@@ -92,4 +92,10 @@ SizePoint run_size(double size_mm, const Method& method, const Plan& plan);
 /// takes longer than a check, so that it serves for batches only.
 double processor_us();
 
+/// What a reading of the clock takes that single checks are timed with; the fastest of some rounds.
+double clock_us();
+
+/// That this process holds at the moment.
+std::size_t heap_bytes();
+
 }  // namespace dowel::bench

@@ -20,8 +20,6 @@ std::vector<Method> peers() {
 #ifdef DOWEL_BENCH_FCL
       {"FCL OBBRSS", make_fcl_obbrss},
       {"FCL OBB", make_fcl_obb},
-#endif
-#ifdef DOWEL_BENCH_FCL_FLOAT
       {"FCL OBBRSS float", make_fcl_obbrss_float},
       {"FCL OBB float", make_fcl_obb_float},
 #endif

@@ -23,7 +23,7 @@ struct Method {
 /// dropped), "published" (the paper's method as it stands there), then the peers.
 std::vector<Method> all_methods();
 
-/// Those that were found at build time: "FCL OBBRSS", "FCL OBB", the same in single precision
+/// Those that were found at build time: "FCL OBBRSS" and "FCL OBB", the same in single precision
 /// ("... float"), "ODE", "Bullet", "CGAL".
 std::vector<Method> peers();
 

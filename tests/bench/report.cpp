@@ -98,7 +98,10 @@ void write_truth(std::ostream& out, const Results& results) {
 void write_times(std::ostream& out, const Results& results) {
   out << "\n### Time per move\n\nMicroseconds: median / 99th percentile / mean of a batch, over "
          "the "
-         "poses of all scenes. Last columns: how many times faster than "
+         "poses of all scenes. A reading of the clock took "
+      << text(results.clock_us)
+      << " us in this run; medians and percentiles contain one, means do not. Last columns: how "
+         "many times faster than "
       << kReference << ", geometric mean over free to contact of medians and of means.\n\n";
   std::vector<std::string> columns{"method"};
   const std::vector<MotionKind> kinds = kinds_of(results);
@@ -137,32 +140,40 @@ void write_scores(std::ostream& out, const Results& results, const char* title,
   }
 }
 
+std::string per_thousand(std::uint64_t count, std::size_t poses) {
+  return std::to_string(
+      std::llround(1000.0 * static_cast<double>(count) / static_cast<double>(poses)));
+}
+
+/// Hits, and tests where the method counts them.
+std::string tests_of(const Run& run) {
+  const std::size_t poses = run.answers.size();
+  const auto hits = static_cast<std::uint64_t>(std::ranges::count(run.answers, true, &Answer::hit));
+  std::string result = per_thousand(hits, poses);
+  if (!run.counters) return result + "; –";
+  return result + "; " + per_thousand(run.counters->box_tests, poses) + " / " +
+         per_thousand(run.counters->triangle_tests, poses);
+}
+
 void write_counters(std::ostream& out, const Results& results) {
-  out << "\n### Tests\n\nN_b / N_p of 1,000 moves (box pairs, of elements and of tree nodes / "
-         "triangle "
-         "pairs).\n\n";
+  out << "\n### Collisions and tests\n\nOf 1,000 moves: collisions that the method tells; N_b / "
+         "N_p "
+         "(box pairs, of elements and of tree nodes / triangle pairs). FCL: pairs of elements that "
+         "its tree over them leaves and pairs of nodes, / pairs of leaves, by its own counters. "
+         "ODE, Bullet and CGAL count nothing that a user could read.\n\n";
   std::vector<std::string> columns{"scene, method"};
   const std::vector<MotionKind> kinds = kinds_of(results);
   for (const MotionKind kind : kinds) columns.emplace_back(to_string(kind));
   header(out, columns);
   for (const Scenario& scene : results.scenarios) {
     for (const std::string& method : results.methods) {
-      std::string line = "| (" + scene.name + ") " + method;
-      bool is_counted = false;
+      out << "| (" << scene.name << ") " << method;
       for (const MotionKind kind : kinds) {
         for (const Run* run : select(results, method, kind, scene.name)) {
-          if (!run->counters) continue;
-          is_counted = true;
-          const double scale = 1000.0 / static_cast<double>(run->answers.size());
-          line +=
-              " | " +
-              std::to_string(std::llround(scale * static_cast<double>(run->counters->box_tests))) +
-              " / " +
-              std::to_string(
-                  std::llround(scale * static_cast<double>(run->counters->triangle_tests)));
+          out << " | " << tests_of(*run);
         }
       }
-      if (is_counted) out << line << " |\n";
+      out << " |\n";
     }
   }
 }
@@ -294,6 +305,7 @@ void write_tables(std::ostream& out, const Results& results) {
 
 std::string json_text(const Results& results) {
   nlohmann::json json;
+  json["clock_us"] = results.clock_us;
   for (const Scenario& scene : results.scenarios) {
     json["scenes"].push_back({{"name", scene.name},
                               {"title", scene.title},

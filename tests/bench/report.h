@@ -15,6 +15,7 @@ struct Results {
   std::vector<Scenario> scenarios;
   std::vector<std::string> methods;
   std::vector<Run> runs;
+  double clock_us = 0.0;  ///< of one reading, which is part of each time of a single check
   std::vector<ScalePoint> scale;
   std::vector<SizePoint> sizes;
   std::vector<Table> tables;            ///< of the other studies

@@ -6,6 +6,7 @@
 
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/silhouette.h"
+#include "layer_worth.h"
 
 namespace dowel::bench {
 
@@ -144,7 +145,7 @@ std::vector<Table> run_skip_study(const Plan& plan) {
     row.push_back(share_of(1000 * skips.moves_without_test, skips.poses));
     counts.rows.push_back(std::move(row));
   }
-  return {std::move(counts), std::move(worth)};
+  return {std::move(counts), layer_worth(plan), std::move(worth)};
 }
 
 }  // namespace dowel::bench

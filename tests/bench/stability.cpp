@@ -9,6 +9,7 @@
 
 #include "dowel/kernel/mesh_defect.h"
 #include "known_pair.h"
+#include "locator_condition.h"
 #include "mate_condition.h"
 #include "methods.h"
 #include "random_geometry.h"
@@ -111,8 +112,16 @@ class Tables {
         plan_(plan) {}
 
   std::vector<Table> make() {
-    return {offsets(),        sizes(),        exact_contact(),        small_gaps(), slivers(),
-            parallel_edges(), long_motions(), mate_conditions(plan_), refusals()};
+    return {offsets(),
+            sizes(),
+            exact_contact(),
+            small_gaps(),
+            slivers(),
+            parallel_edges(),
+            long_motions(),
+            mate_conditions(plan_),
+            locator_conditions(plan_),
+            refusals()};
   }
 
  private:
