@@ -14,6 +14,7 @@
 #include "paper_tables.h"
 #include "preparation.h"
 #include "project_commands.h"
+#include "query_files.h"
 #include "report.h"
 #include "rule_checks.h"
 #include "skips.h"
@@ -31,6 +32,7 @@ struct Arguments {
   bool is_quick = false;
   std::string json_file;
   std::string plot_folder;
+  std::string query_folder;
   std::vector<std::string> studies;
   std::vector<std::string> methods;
   std::vector<std::string> scenes;
@@ -53,6 +55,11 @@ void add_options(CLI::App& app, Arguments& given) {
                "Few poses, one round; fails where a verdict of dowel is wrong");
   add_names(app, "--only", given.studies, "Studies to run; all if not given",
             {kStudies.begin(), kStudies.end()});
+  app.add_option(
+         "--queries", given.query_folder,
+         "Instead of all studies: judges the public test data in this folder (CSV of "
+         "edge-edge and vertex-face, pairs of triangles in .tri); fails where dowel is wrong")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--json", given.json_file, "Writes all figures to this file");
   app.add_option("--plots", given.plot_folder, "Writes the diagrams into this folder")
       ->check(CLI::ExistingDirectory);
@@ -160,6 +167,11 @@ int run(int argc, char** argv) {
   Arguments given;
   add_options(app, given);
   CLI11_PARSE(app, argc, argv);
+  if (!given.query_folder.empty()) {
+    const QueryStudy study = run_query_files(given.query_folder);
+    write(std::cout, study.table);
+    return study.wrong == 0 ? 0 : 1;
+  }
   if (given.is_quick) {
     given.plan.poses = 100;
     given.plan.rounds = 1;
