@@ -94,9 +94,7 @@ std::vector<Method> methods_of_tables() {
   for (const Method& method : all_methods()) {
     if (method.name == "dowel") methods.push_back(method);
   }
-  for (const Method& method : peers()) {
-    if (method.stride == 1) methods.push_back(method);
-  }
+  for (const Method& method : peers()) methods.push_back(method);
   return methods;
 }
 
