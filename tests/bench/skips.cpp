@@ -105,18 +105,26 @@ std::string share_of(std::size_t part, std::size_t whole) {
   return text(static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1)));
 }
 
+std::vector<std::string> row_of(std::string name, const Skips& skips) {
+  std::vector<std::string> row{std::move(name)};
+  for (const std::size_t pairs : skips.pairs) row.push_back(share_of(pairs, skips.poses));
+  row.push_back(share_of(1000 * skips.moves_without_test, skips.poses));
+  return row;
+}
+
 }  // namespace
 
 std::vector<Table> run_skip_study(const Plan& plan) {
   Table counts{"Pairs that each layer rejects",
-               "Of one move against 59 elements, means of all scenes, when every pair goes through "
+               "Of one move against all elements, means of all scenes and of the fields of the "
+               "growth test, when every pair goes through "
                "the layers in order: other heights (layers); beside it in x or y (cells, "
                "intervals); silhouettes apart; a plane parallel to a face of the moving box (type "
                "1), of the other (2), to an edge of each (3); left to the narrow phase. Last "
                "column: of 1,000 moves those that dowel answers without any test, since the way "
                "gone is shorter than the known gap.",
-               {"motion", "heights", "x, y", "silhouettes", "type 1", "type 2", "type 3", "left",
-                "moves without test"},
+               {"motion, field", "heights", "x, y", "silhouettes", "type 1", "type 2", "type 3",
+                "left", "moves without test"},
                {}};
   Table worth{"What the skips are worth",
               "Microseconds of a check, mean of scene (a): as it is; with nothing remembered from "
@@ -140,12 +148,20 @@ std::vector<Table> run_skip_study(const Plan& plan) {
       }
     }
     worth.rows.push_back(std::move(worth_row));
-    std::vector<std::string> row{std::string(to_string(kind))};
-    for (const std::size_t pairs : skips.pairs) row.push_back(share_of(pairs, skips.poses));
-    row.push_back(share_of(1000 * skips.moves_without_test, skips.poses));
-    counts.rows.push_back(std::move(row));
+    counts.rows.push_back(row_of(std::string(to_string(kind)), skips));
   }
-  return {std::move(counts), layer_worth(plan), std::move(worth)};
+  for (std::size_t count = 100; count <= (plan.poses < 500 ? 1'000U : 10'000U); count *= 10) {
+    const Scenario field = field_of_elements(count);
+    const Motion path{MotionKind::Near, field_path(field, plan.poses), {}};
+    Skips skips;
+    count_pairs(field, path, skips);
+    count_untested(*checker_of(field, {}), path, skips);
+    counts.rows.push_back(row_of(field.title, skips));
+  }
+  std::vector<Table> tables = layer_worth(plan);
+  tables.insert(tables.begin(), std::move(counts));
+  tables.push_back(std::move(worth));
+  return tables;
 }
 
 }  // namespace dowel::bench
