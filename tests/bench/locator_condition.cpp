@@ -41,16 +41,17 @@ constexpr double kLength_mm = 80.0;
 
 /// The six locators, the same numbers as dowel has, without rounding from there on.
 struct ExactLocators {
-  Matrix6 G;
+  Matrix6 matrix;
   std::array<Real, 6> singular_values;  ///< ascending
 
   ExactLocators(const Points& points, const LocatingFrame& frame) {
     for (std::size_t i = 0; i < 6; ++i) {
       const Vector3 normal = points[i].normal.cast<Real>();
       const Vector3 arm = points[i].at.cast<Real>() - frame.reference.cast<Real>();
-      G.col(static_cast<Eigen::Index>(i)) << normal, arm.cross(normal) / Real(frame.length_mm);
+      matrix.col(static_cast<Eigen::Index>(i)) << normal, arm.cross(normal) / Real(frame.length_mm);
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(G * G.transpose(), Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<Matrix6> solver(matrix * matrix.transpose(),
+                                                        Eigen::EigenvaluesOnly);
     for (std::size_t i = 0; i < 6; ++i) {
       const Real square = solver.eigenvalues()[static_cast<Eigen::Index>(i)];
       singular_values[i] = square > 0 ? Real(sqrt(square)) : Real(0);
@@ -67,7 +68,7 @@ struct ExactLocators {
 
   /// Largest displacement of `at`, over all signs of the errors.
   Real worst_mm(const Points& points, const LocatingFrame& frame, const Eigen::Vector3d& at) const {
-    const Matrix6 motion_by_error = Matrix6(G.transpose()).fullPivLu().inverse();
+    const Matrix6 motion_by_error = Matrix6(matrix.transpose()).fullPivLu().inverse();
     const Vector3 arm = (at.cast<Real>() - frame.reference.cast<Real>()) / Real(frame.length_mm);
     Real worst = 0;
     for (unsigned signs = 0; signs < 32; ++signs) {

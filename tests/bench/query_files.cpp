@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include <boost/multiprecision/cpp_int.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "collision_element.h"
 #include "dowel/collision/scene.h"
@@ -43,11 +43,11 @@ constexpr double kAlike = 1.0e-9;
   throw std::runtime_error(file.string() + ":" + std::to_string(line) + ": expected " + expected);
 }
 
-/// The double nearest to numerator / denominator.
+/// The double nearest to numerator / denominator: exact where the data were doubles.
 double ratio(const std::string& numerator, const std::string& denominator) {
-  using boost::multiprecision::cpp_int;
-  using boost::multiprecision::cpp_rational;
-  return cpp_rational(cpp_int(numerator), cpp_int(denominator)).convert_to<double>();
+  using Real = boost::multiprecision::cpp_bin_float_100;
+  const Real value = Real(numerator) / Real(denominator);
+  return value.convert_to<double>();
 }
 
 /// "n,d,n,d,n,d,truth".
@@ -60,7 +60,11 @@ Eigen::Vector3d read_vertex(const std::filesystem::path& file, std::size_t numbe
     std::erase_if(cell, [](char c) { return c == ' ' || c == '\r'; });
     cells.push_back(cell);
   }
-  if (cells.size() != 7 || (cells[6] != "0" && cells[6] != "1")) fail(file, number, kExpected);
+  const auto is_empty = [](const std::string& cell) { return cell.empty(); };
+  if (cells.size() != 7 || std::ranges::any_of(cells, is_empty) ||
+      (cells[6] != "0" && cells[6] != "1")) {
+    fail(file, number, kExpected);
+  }
   truth = cells[6] == "1";
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   try {

@@ -124,7 +124,7 @@ std::vector<std::string> measured(std::size_t count, const Plan& plan) {
   std::vector<double> check_ms;
   std::vector<double> both_ms;
   std::size_t ran = 0;
-  const std::size_t moves = std::min<std::size_t>(plan.poses, 200);
+  const std::size_t moves = std::clamp<std::size_t>(plan.poses / 5, 10, 200);
   for (std::size_t i = 0; i < moves; ++i) {
     const std::string& name = movable[random() % movable.size()];
     const Eigen::Vector3d from = session->instance(name).X_WI.translation();
