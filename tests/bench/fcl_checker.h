@@ -33,7 +33,8 @@ struct FclWalk<fcl::OBBRSS<Scalar>> {
 
 /// A dynamic AABB tree over the elements, a tree of bounding volumes over each one's triangles. Two
 /// meshes go straight to the walk that fcl::collide would find for them in its table, since it
-/// counts its tests (and the rest of the table takes minutes to compile in single precision).
+/// counts its tests and takes the same time; the table takes minutes to compile in single
+/// precision.
 template <class BoundingVolume>
 class FclChecker : public Checker {
   using Scalar = typename BoundingVolume::S;
