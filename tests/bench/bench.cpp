@@ -74,6 +74,7 @@ void add_options(CLI::App& app, Arguments& given) {
   add_names(app, "--methods", given.methods, "Methods to run", std::move(methods));
   add_names(app, "--scenes", given.scenes, "Scenes of the moves", {"a", "b", "c", "d"});
   std::vector<std::string> motions;
+  motions.reserve(kMotionKinds.size());
   for (const MotionKind kind : kMotionKinds) motions.emplace_back(to_string(kind));
   add_names(app, "--motions", given.motions, "Motions to run", std::move(motions));
   app.add_option("--wrong", given.wrong_limit, "Wrong verdicts shown of each scene and motion")
