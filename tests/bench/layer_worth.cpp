@@ -103,7 +103,7 @@ class PlainCheck {
     } else {
       judge.decide();
     }
-    const PairVerdict verdict = judge.result();
+    const PairVerdict& verdict = judge.result();
     ++narrow_.decided.at(static_cast<std::size_t>(verdict.method));
     ++narrow_.verdicts.at(static_cast<std::size_t>(verdict.verdict));
     return verdict;
