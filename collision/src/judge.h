@@ -98,8 +98,8 @@ class Judge {
   /// Whether the facets that were in contact still are, or what they slid on.
   bool still_touches();
 
-  /// The same where a place of either is known: that of A on the facet of B, on another one, that
-  /// of B on a facet of A, or else the two facets at another place.
+  /// The same where a place of either is known: that of A on the facet of B or where it slid to,
+  /// that of B on A, or else the two facets at another place.
   bool touches_at_place();
 
   /// The same where none is.

@@ -83,20 +83,18 @@ bool Judge::still_touches() {
 bool Judge::touches_at_place() {
   const std::uint32_t i = memory_.contact_a;
   const std::uint32_t j = memory_.contact_b;
-  const double reach_mm = options_.tolerance_mm;
   const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
   if (touches_at(i, on_a_B, j)) return true;
-  const bool may_leave_facet = options_.holes == HoleMode::Exact;
-  if (may_leave_facet) {
-    const auto near = pair_.b.nearest_within(on_a_B, reach_mm);
-    if (near && touches_at(i, on_a_B, near->triangle)) return true;
-  }
   const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
-  if (touched_at(i, on_b_A, j)) return true;
-  if (may_leave_facet) {
-    const auto near = pair_.a.nearest_within(on_b_A, reach_mm);
-    if (near && touched_at(near->triangle, on_b_A, j)) return true;
-  }
+  if (options_.holes == HoleMode::Paper) return touched_at(i, on_b_A, j);
+  const std::uint32_t walked_b = pair_.b.walk_towards(j, on_a_B);
+  if (walked_b != j && touches_at(i, on_a_B, walked_b)) return true;
+  const std::uint32_t walked_a = pair_.a.walk_towards(i, on_b_A);
+  if (touched_at(walked_a, on_b_A, j)) return true;
+  const auto near_b = pair_.b.nearest_within(on_a_B, options_.tolerance_mm);
+  if (near_b && touches_at(i, on_a_B, near_b->triangle)) return true;
+  const auto near_a = pair_.a.nearest_within(on_b_A, options_.tolerance_mm);
+  if (near_a && touched_at(near_a->triangle, on_b_A, j)) return true;
   return faces_lie_on_each_other(i, placement_ * pair_.a.triangles()[i], j);
 }
 

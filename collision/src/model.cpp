@@ -177,6 +177,7 @@ std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
     if (!is_exact(face)) max_unknown_mm_ = std::max(max_unknown_mm_, face.facet_error_mm);
     for (std::size_t edge = 0; edge < 3; ++edge) {
       const std::uint32_t beyond = neighbours[i][edge];
+      t.beyond[edge] = beyond;
       t.neighbours[edge] = solid.face_of[beyond];
       t.edges[edge] = edge_shape(solid, i, beyond, t.normal, edge);
       if (t.edges[edge] == EdgeShape::Convex || t.edges[edge] == EdgeShape::Concave) {

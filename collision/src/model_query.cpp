@@ -18,6 +18,9 @@ constexpr std::size_t kStackSize = 80;
 /// replaced by another: rounding could count it twice or not at all.
 constexpr double kGrazing = 1e-9;
 
+/// Steps of a walk over a face's facets: points that slide leave a facet for one near by.
+constexpr int kWalk = 12;
+
 /// Rays in general position: no axis of a machined part is parallel to one.
 constexpr std::array<std::array<double, 3>, 8> kRays{{{0.27, 0.53, 0.81},
                                                       {-0.61, 0.37, 0.69},
@@ -173,6 +176,28 @@ std::optional<NearestPoint> CollisionModel::nearest_within(const Eigen::Vector3d
   search(*this, point, best);
   if (best.triangle == kNoTriangle) return std::nullopt;
   return to_result(*this, best, point);
+}
+
+std::uint32_t CollisionModel::walk_towards(std::uint32_t start,
+                                           const Eigen::Vector3d& point) const {
+  std::uint32_t at = start;
+  for (int step = 0; step < kWalk; ++step) {
+    const ModelTriangle& t = triangles_[at];
+    double most = 0.0;
+    std::uint32_t next = at;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (t.edges[i] != EdgeShape::Inner) continue;
+      const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
+      const double beyond = edge.cross(t.normal).dot(point - t.corners[i]);
+      if (beyond > most) {
+        most = beyond;
+        next = t.beyond[i];
+      }
+    }
+    if (next == at) return at;
+    at = next;
+  }
+  return at;
 }
 
 NearestPoint CollisionModel::nearest_brute_force(const Eigen::Vector3d& point) const {

@@ -106,6 +106,11 @@ void CollisionModel::build_tree(const std::vector<Eigen::Vector3d>& reaches) {
     sorted_triangles.push_back(triangles_[t]);
     sorted_components.push_back(component_of_[t]);
   }
+  std::vector<std::uint32_t> place(count);
+  for (std::uint32_t i = 0; i < count; ++i) place[order[i]] = i;
+  for (ModelTriangle& t : sorted_triangles) {
+    for (std::uint32_t& beyond : t.beyond) beyond = place[beyond];
+  }
   triangles_ = std::move(sorted_triangles);
   component_of_ = std::move(sorted_components);
   set_node_boxes();

@@ -105,6 +105,35 @@ TEST_CASE("the tree finds what brute force finds", "[property]") {
   }
 }
 
+TEST_CASE("a walk over a face leads to the triangle that the point is over", "[property]") {
+  const CollisionModel model = model_of(testing::cylinder(6.0, 20.0, 26));
+  const auto is_over = [&](std::uint32_t triangle, const Eigen::Vector3d& p) {
+    const dowel::ModelTriangle& t = model.triangles()[triangle];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
+      if (edge.cross(t.normal).dot(p - t.corners[i]) > 1e-9) return false;
+    }
+    return true;
+  };
+  testing::RandomGeometry random(7);
+  int walks = 0;
+  int moved = 0;
+  int arrived = 0;
+  while (walks < 20'000) {  // steps of a slide over the top
+    const Eigen::Vector3d from(random.uniform(-6, 6), random.uniform(-6, 6), 20.0);
+    const Eigen::Vector3d to = from + random.point(1.0).cwiseProduct(Eigen::Vector3d(1, 1, 0));
+    if (std::max(from.head<2>().norm(), to.head<2>().norm()) > 5.9) continue;
+    ++walks;
+    const std::uint32_t start = model.nearest(from).triangle;
+    const std::uint32_t end = model.walk_towards(start, to);
+    REQUIRE(model.triangles()[end].face == model.triangles()[start].face);
+    moved += is_over(start, to) ? 0 : 1;
+    arrived += is_over(end, to) ? 1 : 0;
+  }
+  CHECK(moved > walks / 10);
+  CHECK(arrived > walks - walks / 100);
+}
+
 TEST_CASE("parity of a ray agrees with the winding number", "[property]") {
   const CollisionModel model =
       model_of(testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20));

@@ -48,6 +48,7 @@ struct ModelTriangle {
   Eigen::Vector3d normal;  ///< unit, outward, of the facet
   std::uint32_t face = 0;
   std::array<std::uint32_t, 3> neighbours{};  ///< face beyond edge i (corner i to i + 1)
+  std::array<std::uint32_t, 3> beyond{};      ///< triangle beyond edge i
   std::array<EdgeShape, 3> edges{};           ///< Inner: the same face goes on beyond it
   bool is_hole = false;                       ///< belongs to the wall of a hole
   /// How far the exact boundary can stand off this facet: 0 for a plane that ends in straight
@@ -120,6 +121,11 @@ class CollisionModel {
 
   /// The same where it is nearer than `radius_mm`; nothing elsewhere. Cheap for small radii.
   std::optional<NearestPoint> nearest_within(const Eigen::Vector3d& point, double radius_mm) const;
+
+  /// The triangle that a walk from triangle `start` over inner edges towards `point` leads to: on a
+  /// convex face the one that the point is over, if it is no dozen triangles away; `start` where
+  /// that is it, or where a rim is in between. For points that slide over a face.
+  std::uint32_t walk_towards(std::uint32_t start, const Eigen::Vector3d& point) const;
 
   /// The same by looking at every triangle. Reference for tests.
   NearestPoint nearest_brute_force(const Eigen::Vector3d& point) const;
