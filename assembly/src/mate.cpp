@@ -92,7 +92,7 @@ double sense_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& axis, c
   return normal.dot(axis) > 0.0 ? 1.0 : -1.0;
 }
 
-void check_seat(const Seat& seat, MateKind kind) {
+void check_seat(const SeatFaces& seat, MateKind kind) {
   if (kind == MateKind::FaceOnFace)
     refuse_mate("two faces are a seat of their own: leave out `seat`");
   for (const Feature* face : {seat.moving_face, seat.fixed_face.feature}) {
@@ -312,7 +312,7 @@ MateKind mate_kind(const Feature& moving, const Feature& fixed) {
 }
 
 MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fixed,
-                            const std::optional<Seat>& seat, const MateOptions& options) {
+                            const std::optional<SeatFaces>& seat, const MateOptions& options) {
   DOWEL_EXPECTS(std::isfinite(options.offset_mm) && std::isfinite(options.rotation_rad));
   const MateKind kind = mate_kind(*moving.feature, *fixed.feature);
   if (options.flip) check_flip(kind, *moving.feature, seat.has_value());
@@ -393,7 +393,7 @@ MateResidual mate_residual(const std::vector<Joint>& joints, const Pose& X_WA, c
 }
 
 MateResidual mate_residual(const PlacedFeature& moving, const PlacedFeature& fixed,
-                           const std::optional<Seat>& seat, const MateOptions& options) {
+                           const std::optional<SeatFaces>& seat, const MateOptions& options) {
   MateFeatures mate;
   mate.kind = mate_kind(*moving.feature, *fixed.feature);
   mate.moving = moving.feature;

@@ -108,9 +108,10 @@ MoveReport Session::insert(const InsertRequest& request, std::string_view comman
   }
   const PlacedFeature moving = impl_->feature(request.moving);
   const PlacedFeature fixed = impl_->feature(request.fixed);
-  std::optional<Seat> seat;
+  std::optional<SeatFaces> seat;
   if (request.seat) {
-    seat = Seat{impl_->feature(request.seat->first).feature, impl_->feature(request.seat->second)};
+    seat = SeatFaces{impl_->feature(request.seat->first).feature,
+                     impl_->feature(request.seat->second)};
   }
   const MatePlacement placement = place_by_mate(moving, fixed, seat, request.options);
   expect_in_reach(placement.X_WA, before.name);

@@ -81,11 +81,11 @@ std::pair<Mate, Pose> Session::Impl::requested(const MateRequest& request) {
   mate.offset_mm = request.options.offset_mm;
   mate.number = state().mates.empty() ? 1 : state().mates.rbegin()->first + 1;
   if (!request.kind) {
-    std::optional<Seat> seat;
+    std::optional<SeatFaces> seat;
     if (request.seat) {
       mate.moving_face = request.seat->first;
       mate.fixed_face = request.seat->second;
-      seat = Seat{feature(mate.moving_face).feature, feature(mate.fixed_face)};
+      seat = SeatFaces{feature(mate.moving_face).feature, feature(mate.fixed_face)};
     }
     const MatePlacement placement =
         place_by_mate(feature(mate.moving), feature(mate.fixed), seat, request.options);

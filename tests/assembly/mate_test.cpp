@@ -18,7 +18,7 @@ using dowel::MatePlacement;
 using dowel::place_by_mate;
 using dowel::PlacedFeature;
 using dowel::Pose;
-using dowel::Seat;
+using dowel::SeatFaces;
 namespace testing = dowel::testing;
 
 namespace {
@@ -173,7 +173,7 @@ TEST_CASE("a seat takes over place and sense along the axis", "[property]") {
   const Pose X_WA(random.rotation(), random.point(300));
   const Pose X_WB(random.rotation(), random.point(300));
   const double lift = random.uniform(0, 9);
-  const Seat seat{&moving_face, {&fixed_face, X_WB}};
+  const SeatFaces seat{&moving_face, {&fixed_face, X_WB}};
   const PlacedFeature hole{&g, X_WB};
   const MatePlacement placed =
       place_by_mate({&f, X_WA}, hole, seat, {.offset_mm = lift, .rotation_rad = 1.0});
@@ -271,7 +271,7 @@ TEST_CASE("mates that make no sense are refused") {
   const Feature face = testing::face_feature("top", {0, 0, 0}, kUp, 1);
   Feature slot = face;
   slot.kind = dowel::FeatureKind::Slot;
-  const auto refused = [](const Feature& f, const Feature& g, const std::optional<Seat>& seat,
+  const auto refused = [](const Feature& f, const Feature& g, const std::optional<SeatFaces>& seat,
                           const MateOptions& options) {
     CHECK_THROWS_AS(place_by_mate({&f, Pose()}, {&g, Pose()}, seat, options), dowel::Error);
   };
@@ -281,10 +281,10 @@ TEST_CASE("mates that make no sense are refused") {
   refused(slot, hole, {}, {});
   refused(blind, hole, {}, {.flip = true});
   refused(face, face, {}, {.flip = true});
-  const Seat askew{&face, {&face, Pose()}};
+  const SeatFaces askew{&face, {&face, Pose()}};
   refused(pin, hole, askew, {});  // the faces are not square to the axes
   refused(face, face, askew, {});
-  const Seat no_faces{&pin, {&hole, Pose()}};
+  const SeatFaces no_faces{&pin, {&hole, Pose()}};
   refused(pin, hole, no_faces, {});
 }
 

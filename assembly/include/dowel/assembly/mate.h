@@ -57,7 +57,7 @@ struct PlacedFeature {
 
 /// Two planar faces, of the moving part and of any other, that take over the place along the axis:
 /// their planes coincide and their normals are opposite, which also settles the sense of the axis.
-struct Seat {
+struct SeatFaces {
   const Feature* moving_face = nullptr;  ///< in the moving instance's frame
   PlacedFeature fixed_face;
 };
@@ -89,7 +89,7 @@ MateKind mate_kind(const Feature& moving, const Feature& fixed);
 /// Throws Error{InvalidInput}: no such mate, a seat whose faces are not square to the axis, a seat
 /// or flip that does not apply. Diameters are not looked at; see `fit_on_axis`.
 MatePlacement place_by_mate(const PlacedFeature& moving, const PlacedFeature& fixed,
-                            const std::optional<Seat>& seat, const MateOptions& options);
+                            const std::optional<SeatFaces>& seat, const MateOptions& options);
 
 /// The pose at `origin_W` whose z axis is unit vector `up_W`, turned about it so that it is as near
 /// as can be to the orientation of `X_WR`.
@@ -136,6 +136,6 @@ MateResidual mate_residual(const std::vector<Joint>& joints, const Pose& X_WA, c
 
 /// `offset_mm` and `flip` as the mate was made with.
 MateResidual mate_residual(const PlacedFeature& moving, const PlacedFeature& fixed,
-                           const std::optional<Seat>& seat, const MateOptions& options);
+                           const std::optional<SeatFaces>& seat, const MateOptions& options);
 
 }  // namespace dowel
