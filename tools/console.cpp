@@ -58,8 +58,8 @@ constexpr std::array kCommands{
             "Reaches a height from the spacers of the catalogue, with the fewest pieces.",
             "stack 85 at PLATE1.E5", true, run_stack},
     Command{"fasten", "INST.HOLE [way N] [dry-run]",
-            "Chooses a screw, with washer and nut where need be, that holds and does not bottom, "
-            "and places them.",
+            "Chooses a screw that holds and does not bottom, with washer and nut where need be, or "
+            "T-nut or T-bolt over a slot; tells other ways, and places the parts.",
             "fasten R1.cb1", true, run_fasten},
     Command{"move", "NAME by DX DY DZ | to X Y Z | along x|y|z|INST.FEATURE MM",
             "Moves an instance on a straight line and checks the way.", "move R1 along x -40", true,

@@ -48,32 +48,38 @@ std::string stack_text(const std::vector<Spacer>& way) {
 }
 
 std::string fastening_text(const Fastening& way, const FasteningPlan& plan) {
-  std::string text = way.screw.element;
-  if (way.washer) text += " on " + way.washer->element;
-  if (way.nut) text += " with " + way.nut->element;
-  text += ": grip " + length_text(way.grip_mm) + " mm, ";
   constexpr double kHundredths = 100.0;
-  const std::string in_diameters = short_number(
-      std::round(kHundredths * way.engagement_mm / way.screw.nominal_mm) / kHundredths);
-  if (way.nut) {
-    return text + "looks out of the nut by " + length_text(way.spare_mm) + " mm";
-  }
-  return text + length_text(way.engagement_mm) + " mm (" + in_diameters + " d) in the thread of " +
+  const auto rounded = [](double value) { return std::round(kHundredths * value) / kHundredths; };
+  const auto mm_text = [&](double length_mm) { return length_text(rounded(length_mm)) + " mm"; };
+  const bool is_bolt = way.screw.kind == Fastener::Kind::TeeBolt;
+  std::string text = way.screw.element;
+  if (is_bolt) text += " in " + plan.holes.at(way.thread).text();
+  if (way.nut && is_bolt) text += " with " + way.nut->element;
+  if (way.washer) text += " on " + way.washer->element;
+  if (way.conical_seat) text += " in " + way.conical_seat->element;
+  if (way.nut && !is_bolt) text += " with " + way.nut->element;
+  text += ": grip " + mm_text(way.grip_mm) + ", ";
+  if (way.nut) return text + "looks out of the nut by " + mm_text(way.spare_mm);
+  const std::string in_diameters = short_number(rounded(way.engagement_mm / way.screw.nominal_mm));
+  return text + mm_text(way.engagement_mm) + " (" + in_diameters + " d) in the thread of " +
          (way.tee_nut ? way.tee_nut->element + " in " : std::string()) +
-         plan.holes.at(way.thread).text() + ", " + length_text(way.spare_mm) +
-         (way.tee_nut ? " mm above the slot's floor" : " mm before its end");
+         plan.holes.at(way.thread).text() + ", " + mm_text(way.spare_mm) +
+         (way.tee_nut ? " above the slot's floor" : " before its end");
 }
 
 Json to_json(const Fastening& way, const FasteningPlan& plan) {
-  Json json{{"screw", way.screw.element},
+  const bool is_bolt = way.screw.kind == Fastener::Kind::TeeBolt;
+  Json json{{is_bolt ? "tee_bolt" : "screw", way.screw.element},
             {"grip_mm", way.grip_mm},
             {"engagement_mm", way.engagement_mm},
             {"spare_mm", way.spare_mm}};
   if (way.washer) json["washer"] = way.washer->element;
+  if (way.conical_seat) json["conical_seat"] = way.conical_seat->element;
   if (way.tee_nut) json["tee_nut"] = way.tee_nut->element;
-  if (way.nut) {
-    json["nut"] = way.nut->element;
-  } else {
+  if (way.nut) json["nut"] = way.nut->element;
+  if (is_bolt) {
+    json["slot"] = plan.holes.at(way.thread).text();
+  } else if (!way.nut) {
     json["thread"] = plan.holes.at(way.thread).text();
   }
   return json;
@@ -104,6 +110,7 @@ Reply placed_reply(const std::vector<MoveReport>& reports, const std::string& ch
 
 Reply run_stack(Console& console, Arguments& arguments) {
   const double height_mm = arguments.number("a height in mm");
+  if (!(height_mm > 0.0)) arguments.fail_at_last("a height is more than 0 mm");
   arguments.expect("at");
   const FeatureName on = read_feature(console, arguments, "a hole");
   const StackPlan plan =

@@ -53,8 +53,9 @@ std::optional<ToldFit> told_fit(const Feature& shaft, const Feature& hole, doubl
   return ToldFit{*drawn, false};
 }
 
-std::string thread_text(double nominal_mm) {
-  return "M" + short_number(nominal_mm);
+/// As stated; else by the diameter, which does not tell the pitch.
+std::string thread_text(const Feature& feature, double nominal_mm) {
+  return feature.thread.empty() ? "M" + short_number(nominal_mm) : feature.thread;
 }
 
 }  // namespace
@@ -74,8 +75,8 @@ Json to_json(const Fit& fit) {
 
 std::string drawn_fit_text(const Feature& shaft, const Feature& hole) {
   if (core_hole(hole, shaft.diameter_mm)) {
-    return "thread " + thread_text(shaft.diameter_mm) + " in thread " +
-           thread_text(shaft.diameter_mm);
+    return "thread " + thread_text(shaft, shaft.diameter_mm) + " in thread " +
+           thread_text(hole, shaft.diameter_mm);
   }
   const double bore_mm = bore_of(shaft, hole);
   if (const auto told = told_fit(shaft, hole, bore_mm)) {
@@ -88,7 +89,7 @@ std::string drawn_fit_text(const Feature& shaft, const Feature& hole) {
                         : "play " + length_text(play_mm) + " mm as drawn";
   const MetricThread* core = thread_of_core_hole(bore_mm);
   if (core != nullptr && play_mm >= 0.0 && likely_thread_of_hole(bore_mm) != nullptr) {
-    text += "; the hole is the core of a thread " + thread_text(core->nominal_mm);
+    text += "; the hole is the core of a thread " + std::string(core->name);
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "dowel/assembly/names.h"
@@ -10,12 +11,10 @@
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/tolerance.h"
 #include "project_rows.h"
+#include "slot_fastening.h"
 
 namespace dowel {
 namespace {
-
-/// Parts farther apart than this along an axis are not fastened together.
-constexpr double kOpenJoint_mm = 0.1;
 
 /// Ways that are offered.
 constexpr std::size_t kMostWays = 4;
@@ -62,20 +61,27 @@ const PlacedFeature& expect_hole(const PlacedFeature& feature, const FeatureName
          ", expected a hole");
 }
 
-/// A placement by one mate, and its pose.
-Placement placed_by_mate(Session& session, const std::string& element, const std::string& name,
-                         const std::string& feature, const FeatureName& fixed_name,
-                         const PlacedFeature& fixed, double offset_mm) {
-  const Feature* moving = session.element(element).find_feature(feature);
+/// What something is mated with.
+struct NamedFeature {
+  FeatureName name;
+  PlacedFeature placed;
+};
+
+/// A placement by one mate, turned as little as can be against `X_WA_near`, else the fixed part.
+Placement placed_by_mate(Session& session, const std::string& element, const FeatureName& name,
+                         const NamedFeature& fixed, const MateOptions& options,
+                         const std::optional<Pose>& X_WA_near = std::nullopt) {
+  const Feature* moving = session.element(element).find_feature(name.feature);
   DOWEL_EXPECTS(moving != nullptr);
-  const MatePlacement to =
-      place_by_mate({moving, fixed.X_WI}, fixed, std::nullopt, {.offset_mm = offset_mm});
+  const MatePlacement to = place_by_mate({moving, X_WA_near.value_or(fixed.placed.X_WI)},
+                                         fixed.placed, std::nullopt, options);
   Mate mate;
   mate.kind = to.kind;
-  mate.moving = {name, feature};
-  mate.fixed = fixed_name;
-  mate.offset_mm = offset_mm;
-  return {element, name, to.X_WA, {mate}};
+  mate.moving = name;
+  mate.fixed = fixed.name;
+  mate.offset_mm = options.offset_mm;
+  mate.flip = options.flip;
+  return {element, name.instance, to.X_WA, {mate}};
 }
 
 /// How deep the counterbore of a hole is, and how wide; 0 where it has none.
@@ -90,13 +96,6 @@ std::pair<double, double> counterbore(const Feature& hole) {
   }
   return {0.0, 0.0};
 }
-
-/// The holes of all instances on one axis, as far as the parts follow each other.
-struct Bore {
-  std::vector<BoreStretch> stretches;
-  std::vector<FeatureName> holes;
-  double reached_mm = 0.0;  ///< depth at which the last part ends
-};
 
 /// A stretch of any hole on the axis; cones only tell that parts follow each other.
 struct AxisStretch {
@@ -139,11 +138,14 @@ Bore bore_along(Session& session, const Eigen::Vector3d& start_W,
   return bore;
 }
 
+/// Each kind of the part's family where it has any: a slot system has its own T-nuts, and screws
+/// and washers of any other.
 std::vector<Fastener> fasteners_for(Session& session, const std::string& instance) {
   std::vector<Fastener> fasteners;
-  // T-nuts apart: a slot system has its own, and screws of any other.
   for (const std::set<std::string>& roles :
-       {std::set<std::string>{"SCREW", "WASHER", "NUT"}, std::set<std::string>{"TEE"}}) {
+       {std::set<std::string>{"SCREW"}, std::set<std::string>{"WASHER"},
+        std::set<std::string>{"NUT", "COLLAR"}, std::set<std::string>{"TEE"},
+        std::set<std::string>{"SPHERICAL", "CONICAL", "WIDE"}}) {
     for (const std::string& name : elements_for(session, roles, family_of(session, instance))) {
       if (const auto fastener = fastener_of(session.element(name))) fasteners.push_back(*fastener);
     }
@@ -151,143 +153,29 @@ std::vector<Fastener> fasteners_for(Session& session, const std::string& instanc
   return fasteners;
 }
 
-}  // namespace
-
-namespace {
-
-/// A T-slot below a bore.
-struct SlotBelow {
-  FeatureName name;
-  PlacedFeature slot;
-  double mouth_mm = 0.0;  ///< its depth along the bore
-};
-
-/// Depth at which the axis leaves the last part where its bore ends in a slot of its foot, as those
-/// for keys do.
-double past_key_slot(Session& session, const Eigen::Vector3d& start_W,
-                     const Eigen::Vector3d& direction_W, double reached_mm) {
-  for (const Instance* instance : session.state().in_order()) {
-    for (const Feature& slot : session.element(instance->element).features) {
-      if (slot.kind != FeatureKind::Slot || !slot.slot) continue;
-      const PlacedFeature placed{&slot, instance->X_WI};
-      if ((placed.direction_W() + direction_W).norm() > kCoaxial_rad) continue;
-      const Eigen::Vector3d off_W = placed.origin_W() - start_W;
-      const double mouth_mm = off_W.dot(direction_W);
-      const Eigen::Vector3d run_W = instance->X_WI.rotation() * slot.slot->run;
-      const Eigen::Vector3d beside_W = off_W - mouth_mm * direction_W;
-      const double along_mm = run_W.dot(beside_W);
-      if (std::abs(mouth_mm - slot.depth_mm - reached_mm) <= kOpenJoint_mm &&
-          (beside_W - along_mm * run_W).norm() <= 0.5 * slot.diameter_mm &&
-          std::abs(along_mm) <= 0.5 * slot.slot->length_mm) {
-        return mouth_mm;
-      }
-    }
-  }
-  return reached_mm;
-}
-
-/// The slot whose mouth the axis meets where the last part ends, in its middle.
-std::optional<SlotBelow> slot_below(Session& session, const Eigen::Vector3d& start_W,
-                                    const Eigen::Vector3d& direction_W, double reached_mm) {
-  for (const Instance* instance : session.state().in_order()) {
-    for (const Feature& slot : session.element(instance->element).features) {
-      if (slot.kind != FeatureKind::Slot || !slot.slot || slot.slot->type != SlotShape::Type::Tee) {
-        continue;
-      }
-      const PlacedFeature placed{&slot, instance->X_WI};
-      if ((placed.direction_W() - direction_W).norm() > kCoaxial_rad) continue;
-      const Eigen::Vector3d off_W = placed.origin_W() - start_W;
-      const double mouth_mm = off_W.dot(direction_W);
-      const Eigen::Vector3d run_W = instance->X_WI.rotation() * slot.slot->run;
-      const Eigen::Vector3d beside_W = off_W - mouth_mm * direction_W;
-      const double along_mm = run_W.dot(beside_W);
-      if (std::abs(mouth_mm - reached_mm) > kOpenJoint_mm ||
-          (beside_W - along_mm * run_W).norm() > kCoaxial_mm ||
-          std::abs(along_mm) > 0.5 * slot.slot->length_mm) {
-        continue;
-      }
-      return SlotBelow{{instance->name, slot.name}, placed, mouth_mm};
-    }
-  }
-  return std::nullopt;
-}
-
-/// Full threads in a T-nut, in diameters: it is heat-treated (DIN 508), where a part need not be.
-constexpr double kTeeNutEngagement = 0.9;
-
-/// Ways with each T-nut that fits the slot; the screw may look out of it, short of the slot's
-/// floor; their thread is the hole behind the last of the bore.
-FasteningChoices choose_in_slot(const Bore& bore, const SlotBelow& below,
-                                std::span<const Fastener> fasteners,
-                                const FasteningOptions& options) {
-  const SlotShape& shape = *below.slot.feature->slot;
-  FasteningChoices all;
-  for (const Fastener& nut : fasteners) {
-    // Without a neck nothing keeps it from turning in the slot.
-    const bool has_neck = nut.foot_height_mm < nut.length_mm - kCoincident_mm;
-    if (nut.kind != Fastener::Kind::TeeNut || !has_neck ||
-        nut.foot_width_mm > shape.undercut_width_mm ||
-        nut.foot_height_mm > shape.undercut_height_mm ||
-        nut.length_mm - nut.foot_height_mm > shape.throat_depth_mm) {
-      continue;
-    }
-    const double shoulder_mm = below.mouth_mm + shape.throat_depth_mm;
-    std::vector<BoreStretch> stretches = bore.stretches;
-    const double top_mm = shoulder_mm - (nut.length_mm - nut.foot_height_mm);
-    stretches.push_back({top_mm, below.mouth_mm + below.slot.feature->depth_mm,
-                         nut.core_diameter_mm, bore.holes.size()});
-    std::vector<Fastener> fitting(fasteners.begin(), fasteners.end());
-    std::erase_if(fitting, [&](const Fastener& other) {
-      return other.kind == Fastener::Kind::Screw && other.nominal_mm != nut.nominal_mm;
-    });
-    FasteningOptions in_nut = options;
-    in_nut.engagement_in_diameters = kTeeNutEngagement;
-    FasteningChoices choices = choose_fastening(stretches, fitting, in_nut);
-    for (Fastening& way : choices.ways) {
-      if (way.nut || way.thread != bore.holes.size()) continue;
-      way.tee_nut = nut;
-      way.engagement_mm = std::min(way.engagement_mm, nut.length_mm);
-      all.ways.push_back(std::move(way));
-    }
-    if (!choices.reason.empty()) {
-      all.reason += (all.reason.empty() ? "" : "; ") + nut.element + ": " + choices.reason;
-    }
-  }
-  // The thickest screw first: it is what the slot was made for.
-  std::ranges::stable_sort(all.ways, [](const Fastening& a, const Fastening& b) {
-    if (a.screw.nominal_mm != b.screw.nominal_mm) return a.screw.nominal_mm > b.screw.nominal_mm;
-    return a.screw.length_mm < b.screw.length_mm;
+/// Ways with screws whose heads go into the counterbore, or are wider than the mouth.
+FasteningChoices choose_screws(Session& session, const PlacedFeature& at, bool in_counterbore,
+                               const std::vector<Fastener>& all) {
+  const auto [step_mm, width_mm] = counterbore(*at.feature);
+  const double mouth_mm = width_mm > 0.0 ? width_mm : at.feature->diameter_mm;
+  std::vector<Fastener> fitting = all;
+  std::erase_if(fitting, [&](const Fastener& fastener) {
+    if (fastener.kind != Fastener::Kind::Screw) return false;
+    return in_counterbore ? fastener.head_diameter_mm > mouth_mm + kShaftExcess_mm
+                          : fastener.head_diameter_mm <= mouth_mm;
   });
-  if (all.ways.empty() && all.reason.empty()) all.reason = "no T-nut with a neck fits the slot";
-  return all;
-}
-
-/// A T-nut in its slot, its hole on the screw's axis and its foot drawn up under the throat.
-Placement placed_tee_nut(Session& session, const Fastener& nut, const std::string& name,
-                         const FeatureName& slot_name, const Eigen::Vector3d& axis_W) {
-  const PlacedFeature slot = session.feature(slot_name);
-  const Element& element = session.element(nut.element);
-  MateFeatures key;
-  key.kind = MateKind::KeyInSlot;
-  key.moving_element = &element;
-  key.moving = element.find_feature(nut.feature);
-  key.fixed = slot.feature;
-  const Joint joint = mate_joints(key, Pose()).front();
-  // Turned as the key asks, then its hole to where the screw is.
-  const Pose X_WN = place_by_joint(joint, slot.X_WI, slot.X_WI);
-  const Eigen::Vector3d into_W = slot.direction_W();
-  const Eigen::Vector3d off_W = axis_W - X_WN * key.moving->origin;
-  const double top_mm = into_W.dot(slot.origin_W() - X_WN * key.moving->origin) +
-                        slot.feature->slot->throat_depth_mm - (nut.length_mm - nut.foot_height_mm);
-  const Eigen::Vector3d along_W = off_W - into_W.dot(off_W) * into_W;
-  Mate mate;
-  mate.kind = MateKind::KeyInSlot;
-  mate.moving = {name, nut.feature};
-  mate.fixed = slot_name;
-  return {nut.element,
-          name,
-          Pose(X_WN.rotation(), X_WN.translation() + along_W + top_mm * into_W),
-          {mate}};
+  const double seat_mm = in_counterbore ? step_mm : 0.0;
+  const Eigen::Vector3d direction_W = at.direction_W().normalized();
+  const Eigen::Vector3d start_W = at.origin_W() + seat_mm * direction_W;
+  FasteningOptions options;
+  options.needs_washer = !in_counterbore;
+  const Bore bore = bore_along(session, start_W, direction_W);
+  const auto below = slot_below(session, start_W, direction_W, bore.reached_mm);
+  FasteningChoices choices = below ? choose_tee_nut(bore, *below, fitting, options)
+                                   : choose_fastening(bore.stretches, fitting, options);
+  if (choices.ways.size() > kMostWays) choices.ways.resize(kMostWays);
+  for (Fastening& way : choices.ways) way.seat_mm = seat_mm;
+  return choices;
 }
 
 }  // namespace
@@ -295,13 +183,16 @@ Placement placed_tee_nut(Session& session, const Fastener& nut, const std::strin
 StackPlan plan_stack(Session& session, double height_mm, const FeatureName& on) {
   expect_hole(session.feature(on), on);
   std::vector<Spacer> spacers;
-  std::string heights;
   for (const std::string& name :
        elements_for(session, {"SPACER"}, family_of(session, on.instance))) {
     const auto spacer = spacer_of(session.element(name));
     if (!spacer) continue;
-    heights += (heights.empty() ? "" : ", ") + number_text(spacer->height_mm);
     spacers.push_back(*spacer);
+  }
+  std::ranges::stable_sort(spacers, {}, &Spacer::height_mm);
+  std::string heights;
+  for (const Spacer& spacer : spacers) {
+    heights += (heights.empty() ? "" : ", ") + number_text(spacer.height_mm);
   }
   StackPlan plan{on, height_mm, stack_choices(spacers, height_mm, kMostWays)};
   if (plan.ways.empty()) {
@@ -319,14 +210,12 @@ std::vector<MoveReport> stack(Session& session, const StackPlan& plan, std::size
   for (const Spacer& spacer : plan.ways[way]) elements.push_back(spacer.element);
   const std::vector<std::string> names = new_names(session, elements);
   std::vector<Placement> placements;
-  FeatureName below_name = plan.on;
-  PlacedFeature below = session.feature(plan.on);
+  NamedFeature below{plan.on, session.feature(plan.on)};
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const std::string& hole = plan.ways[way][i].hole;
-    placements.push_back(
-        placed_by_mate(session, elements[i], names[i], hole, below_name, below, 0.0));
-    below_name = {names[i], hole};
-    below = {session.element(elements[i]).find_feature(hole), placements.back().X_WI};
+    placements.push_back(placed_by_mate(session, elements[i], {names[i], hole}, below, {}));
+    below = {{names[i], hole},
+             {session.element(elements[i]).find_feature(hole), placements.back().X_WI}};
   }
   return session.place_all(placements, command);
 }
@@ -336,74 +225,150 @@ FasteningPlan plan_fastening(Session& session, const FeatureName& hole) {
   expect_hole(at, hole);
   const std::vector<Fastener> all = fasteners_for(session, hole.instance);
   const auto [step_mm, width_mm] = counterbore(*at.feature);
+  FasteningPlan plan;
+  plan.hole = hole;
   std::string reason;
+  const auto told = [&](const char* where, const std::string& why) {
+    reason += (reason.empty() ? "" : "; ") + std::string(where) + why;
+  };
   for (const bool in_counterbore : {true, false}) {
-    if (in_counterbore && step_mm == 0.0) continue;
-    // A head that does not go in stands on the face, if it is wider than the mouth.
-    const double mouth_mm = width_mm > 0.0 ? width_mm : at.feature->diameter_mm;
-    std::vector<Fastener> fitting = all;
-    std::erase_if(fitting, [&, width = width_mm](const Fastener& fastener) {
-      if (fastener.kind != Fastener::Kind::Screw) return false;
-      return in_counterbore ? fastener.head_diameter_mm > width + kShaftExcess_mm
-                            : fastener.head_diameter_mm <= mouth_mm;
-    });
-    FasteningPlan plan;
-    plan.hole = hole;
-    plan.seat_mm = in_counterbore ? step_mm : 0.0;
-    const Eigen::Vector3d direction_W = at.direction_W().normalized();
-    FasteningOptions options;
-    options.needs_washer = !in_counterbore;
-    const Eigen::Vector3d start_W = at.origin_W() + plan.seat_mm * direction_W;
-    Bore bore = bore_along(session, start_W, direction_W);
-    const double reached_mm = past_key_slot(session, start_W, direction_W, bore.reached_mm);
-    const auto below = slot_below(session, start_W, direction_W, reached_mm);
-    FasteningChoices choices = below ? choose_in_slot(bore, *below, fitting, options)
-                                     : choose_fastening(bore.stretches, fitting, options);
-    if (below) bore.holes.push_back(below->name);
-    if (choices.ways.size() > kMostWays) choices.ways.resize(kMostWays);
-    plan.holes = std::move(bore.holes);
+    if (!plan.ways.empty() || (in_counterbore && step_mm == 0.0)) continue;
+    FasteningChoices choices = choose_screws(session, at, in_counterbore, all);
+    told(in_counterbore ? "in its counterbore " : "on its face ", choices.reason);
     plan.ways = std::move(choices.ways);
-    if (!plan.ways.empty()) return plan;
-    reason += (reason.empty() ? "" : "; ") +
-              std::string(in_counterbore ? "in its counterbore " : "on its face ") + choices.reason;
   }
-  refuse("nothing fastens " + hole.text() + ": " + reason);
+  const Eigen::Vector3d direction_W = at.direction_W().normalized();
+  Bore bore = bore_along(session, at.origin_W(), direction_W);
+  if (const auto below = slot_below(session, at.origin_W(), direction_W, bore.reached_mm)) {
+    FasteningChoices bolts =
+        choose_bolt_in_slot(bore, *below, all, width_mm > 0.0 ? width_mm : at.feature->diameter_mm);
+    told("from the slot ", bolts.reason);
+    plan.ways.insert(plan.ways.end(), bolts.ways.begin(), bolts.ways.end());
+    // What holds by a whole nut before what holds by a low one.
+    std::ranges::stable_partition(plan.ways, [](const Fastening& way) {
+      return way.engagement_mm >= kTeeNutEngagement * way.screw.nominal_mm - kCoincident_mm;
+    });
+    bore.holes.push_back(below->name);
+  }
+  plan.holes = std::move(bore.holes);
+  if (plan.ways.empty()) refuse("nothing fastens " + hole.text() + ": " + reason);
+  return plan;
 }
+
+namespace {
+
+/// Places the parts of a fastening one after the other.
+class Fastened {
+ public:
+  Fastened(Session& session, const FasteningPlan& plan, const Fastening& chosen)
+      : session_(session),
+        plan_(plan),
+        chosen_(chosen),
+        hole_{plan.hole, session.feature(plan.hole)} {
+    std::vector<std::string> elements;
+    for (const Fastener* part : parts()) elements.push_back(part->element);
+    const std::vector<std::string> names = new_names(session, elements);
+    for (std::size_t i = 0; i < names.size(); ++i) names_[parts()[i]] = names[i];
+  }
+
+  std::vector<Placement> placements() {
+    const bool is_bolt = chosen_.screw.kind == Fastener::Kind::TeeBolt;
+    // What is in the slot comes first: it slides along it.
+    if (is_bolt) put_tee_bolt();
+    if (chosen_.tee_nut) put_tee_nut();
+    const double under_head_mm = chosen_.lift_mm() - chosen_.seat_mm;
+    if (chosen_.conical_seat) put_on_hole(*chosen_.conical_seat, -chosen_.seat_mm);
+    if (chosen_.washer) put_on_hole(*chosen_.washer, under_head_mm - chosen_.washer->length_mm);
+    if (!is_bolt) {
+      put_on_hole(chosen_.screw, under_head_mm);
+      placements_.back().mates.front().thread =
+          !chosen_.nut && plan_.holes.at(chosen_.thread) == plan_.hole;
+    }
+    if (chosen_.nut) put_nut(*chosen_.nut);
+    return std::move(placements_);
+  }
+
+ private:
+  /// In the order of their names.
+  std::vector<const Fastener*> parts() const {
+    std::vector<const Fastener*> parts{&chosen_.screw};
+    for (const auto* part :
+         {&chosen_.conical_seat, &chosen_.washer, &chosen_.nut, &chosen_.tee_nut}) {
+      if (*part) parts.push_back(&**part);
+    }
+    return parts;
+  }
+
+  FeatureName name(const Fastener& part) const { return {names_.at(&part), part.feature}; }
+
+  PlacedFeature slot() const { return session_.feature(plan_.holes.at(chosen_.thread)); }
+
+  void put_on_hole(const Fastener& part, double offset_mm) {
+    placements_.push_back(placed_by_mate(session_, part.element, name(part), hole_,
+                                         {.offset_mm = offset_mm, .flip = part.flip}));
+    if (&part == &chosen_.screw) X_WS_ = placements_.back().X_WI;
+  }
+
+  /// A key in the slot, by what leads it in.
+  Mate mate_with_slot(const Fastener& part) const {
+    Mate mate;
+    mate.kind = MateKind::KeyInSlot;
+    mate.moving = {names_.at(&part), key_feature(session_.element(part.element), part)};
+    mate.fixed = plan_.holes.at(chosen_.thread);
+    return mate;
+  }
+
+  void put_tee_bolt() {
+    const Fastener& bolt = chosen_.screw;
+    X_WS_ = pose_in_slot(session_, bolt, slot(), hole_.placed.origin_W());
+    Mate key = mate_with_slot(bolt);
+    const SlotShape& shape = *slot().feature->slot;
+    key.offset_mm = shape.undercut_height_mm - bolt.foot_height_mm;  // off the slot's floor
+    Mate align;
+    align.kind = MateKind::Align;
+    align.moving = name(bolt);
+    align.fixed = plan_.hole;
+    align.flip = true;
+    placements_.push_back({bolt.element, names_.at(&bolt), X_WS_, {key, align}});
+  }
+
+  void put_tee_nut() {
+    const Fastener& nut = *chosen_.tee_nut;
+    const Pose X_WN = pose_in_slot(session_, nut, slot(), hole_.placed.origin_W());
+    placements_.push_back({nut.element, names_.at(&nut), X_WN, {mate_with_slot(nut)}});
+  }
+
+  /// On the thread of the screw; a collar towards the parts.
+  void put_nut(const Fastener& nut) {
+    const Fastener& screw = chosen_.screw;
+    const NamedFeature shaft{name(screw),
+                             {session_.element(screw.element).find_feature(screw.feature), X_WS_}};
+    const Feature& hole = *session_.element(nut.element).find_feature(nut.feature);
+    const double sense = nut.flip ? 1.0 : -1.0;
+    const Pose X_WN(
+        nearest_rotation(X_WS_.rotation(), hole.direction, sense * shaft.placed.direction_W()),
+        X_WS_.translation());
+    placements_.push_back(placed_by_mate(session_, nut.element, name(nut), shaft,
+                                         {.offset_mm = chosen_.grip_mm - screw.neck_height_mm},
+                                         X_WN));
+    placements_.back().mates.front().thread = true;
+  }
+
+  Session& session_;
+  const FasteningPlan& plan_;
+  const Fastening& chosen_;
+  NamedFeature hole_;
+  std::map<const Fastener*, std::string> names_;
+  Pose X_WS_;
+  std::vector<Placement> placements_;
+};
+
+}  // namespace
 
 std::vector<MoveReport> fasten(Session& session, const FasteningPlan& plan, std::size_t way,
                                std::optional<std::string_view> command) {
   DOWEL_EXPECTS(way < plan.ways.size());
-  const Fastening& chosen = plan.ways[way];
-  std::vector<std::string> elements{chosen.screw.element};
-  if (chosen.washer) elements.push_back(chosen.washer->element);
-  if (chosen.nut) elements.push_back(chosen.nut->element);
-  if (chosen.tee_nut) elements.push_back(chosen.tee_nut->element);
-  const std::vector<std::string> names = new_names(session, elements);
-  const PlacedFeature hole = session.feature(plan.hole);
-  std::vector<Placement> placements;
-  double lift_mm = -plan.seat_mm;
-  if (chosen.washer) {
-    placements.push_back(placed_by_mate(session, elements[1], names[1], chosen.washer->feature,
-                                        plan.hole, hole, lift_mm));
-    lift_mm += chosen.washer->length_mm;
-  }
-  placements.push_back(placed_by_mate(session, elements[0], names[0], chosen.screw.feature,
-                                      plan.hole, hole, lift_mm));
-  if (chosen.tee_nut) {
-    // First, as it is brought in: it slides along its slot.
-    placements.insert(placements.begin(),
-                      placed_tee_nut(session, *chosen.tee_nut, names.back(),
-                                     plan.holes.at(chosen.thread), hole.origin_W()));
-  }
-  placements.back().mates.front().thread = !chosen.nut && plan.holes.at(chosen.thread) == plan.hole;
-  if (chosen.nut) {
-    const PlacedFeature shaft{session.element(elements[0]).find_feature(chosen.screw.feature),
-                              placements.back().X_WI};
-    placements.push_back(placed_by_mate(session, elements.back(), names.back(), chosen.nut->feature,
-                                        {names[0], chosen.screw.feature}, shaft, chosen.grip_mm));
-    placements.back().mates.front().thread = true;
-  }
-  return session.place_all(placements, command);
+  return session.place_all(Fastened(session, plan, plan.ways[way]).placements(), command);
 }
 
 }  // namespace dowel

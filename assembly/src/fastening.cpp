@@ -4,9 +4,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 
-#include "dowel/assembly/names.h"
-#include "dowel/assembly/thread.h"
+#include "dowel/catalog/metric_thread.h"
 #include "dowel/kernel/tolerance.h"
 
 namespace dowel {
@@ -16,9 +16,6 @@ namespace {
 constexpr double kShortOfEnd = 1.0;
 constexpr double kMostBeyondNut = 6.0;
 
-/// A washer's hole is wider than the thread by no more than this share of it (ISO 7089, 7093).
-constexpr double kWasherPlay = 0.15;
-
 std::string text(double length_mm) {
   // To a hundredth: what a reader compares with a ruler.
   std::array<char, 32> buffer{};
@@ -27,97 +24,11 @@ std::string text(double length_mm) {
   return {buffer.data(), end};
 }
 
-/// How far the part reaches along `direction` from `origin`, by its faces square to it.
-double reach_mm(const Element& element, const Eigen::Vector3d& origin,
-                const Eigen::Vector3d& direction) {
-  double most = 0.0;
-  for (const Feature& face : element.features) {
-    if (face.kind != FeatureKind::Face || face.direction.dot(direction) < 1.0 - kCoaxial_rad) {
-      continue;
-    }
-    most = std::max(most, direction.dot(face.origin - origin));
-  }
-  return most;
-}
-
-/// The widest of the element across `direction`, by its box: heads are round, hexagons or more.
-double width_across(const Element& element, const Eigen::Vector3d& direction) {
-  double widest_mm = 0.0;
-  Eigen::Index along = 0;
-  (element.obb.axes.transpose() * direction).cwiseAbs().maxCoeff(&along);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    if (i != along) widest_mm = std::max(widest_mm, 2.0 * element.obb.half_extents_mm[i]);
-  }
-  return widest_mm;
-}
-
-std::optional<Fastener> screw_of(const Element& element) {
-  Fastener screw;
-  for (const Feature& shaft : element.features) {
-    if (shaft.kind != FeatureKind::Shaft) continue;
-    const MetricThread* thread = thread_of_shaft(shaft.diameter_mm);
-    if (thread == nullptr || (screw.nominal_mm > 0.0 && thread->nominal_mm >= screw.nominal_mm)) {
-      continue;
-    }
-    screw.nominal_mm = thread->nominal_mm;
-    screw.feature = shaft.name;
-    screw.thread_end_mm = shaft.depth_mm;
-    screw.head_diameter_mm = width_across(element, shaft.direction);
-    screw.length_mm = std::max(shaft.depth_mm, reach_mm(element, shaft.origin, shaft.direction));
-  }
-  screw.element = element.name;
-  if (screw.nominal_mm == 0.0 || screw.head_diameter_mm <= screw.nominal_mm + kBoxSlack_mm)
-    return std::nullopt;
-  return screw;
-}
-
-std::optional<Fastener> ring_of(const Element& element, Fastener::Kind kind) {
-  const Feature* hole = nullptr;
-  Fastener ring;
-  for (const Feature& feature : element.features) {
-    if (feature.kind == FeatureKind::Shaft) {
-      ring.head_diameter_mm = std::max(ring.head_diameter_mm, feature.diameter_mm);
-    }
-    if (feature.kind != FeatureKind::Hole) continue;
-    if (hole != nullptr || !feature.through) return std::nullopt;
-    hole = &feature;
-  }
-  if (hole == nullptr) return std::nullopt;
-  ring.kind = kind;
-  ring.element = element.name;
-  ring.length_mm = hole->depth_mm;
-  ring.feature = hole->name;
-  if (kind == Fastener::Kind::Nut) {
-    const MetricThread* thread = thread_of_core_hole(hole->diameter_mm);
-    if (thread == nullptr) return std::nullopt;
-    ring.nominal_mm = thread->nominal_mm;
-    ring.core_diameter_mm = hole->diameter_mm;
-    return ring;
-  }
-  for (const MetricThread& thread : metric_threads()) {
-    const double play = hole->diameter_mm / thread.nominal_mm - 1.0;
-    if (play > 0.0 && play <= kWasherPlay) ring.nominal_mm = thread.nominal_mm;
-  }
-  if (ring.nominal_mm == 0.0) return std::nullopt;
-  return ring;
-}
-
-/// A nut with a foot under a neck. A T-bolt has no hole.
-std::optional<Fastener> tee_nut_of(const Element& element) {
-  auto nut = ring_of(element, Fastener::Kind::Nut);
-  if (!nut) return std::nullopt;
-  nut->kind = Fastener::Kind::TeeNut;
-  const Feature& hole = *element.find_feature(nut->feature);
-  double shoulder_mm = 0.0;  // from the top to the lowest face that looks up
-  for (const Feature& face : element.features) {
-    if (face.kind != FeatureKind::Face || face.direction.dot(hole.direction) > kCoaxial_rad - 1.0) {
-      continue;
-    }
-    shoulder_mm = std::max(shoulder_mm, hole.direction.dot(face.origin - hole.origin));
-  }
-  nut->foot_height_mm = nut->length_mm - shoulder_mm;
-  nut->foot_width_mm = width_across(element, hole.direction);
-  return nut;
+/// Whether a fastener has threads of this size.
+bool has_thread(const Fastener& fastener, const MetricThread& size) {
+  if (fastener.nominal_mm != size.nominal_mm) return false;
+  if (fastener.pitch_mm == 0.0) return thread_of_shaft(size.nominal_mm) == &size;
+  return fastener.pitch_mm == size.pitch_mm;
 }
 
 /// The thread of a bore for one nominal diameter: the first core hole (`surely` one, or what could
@@ -129,15 +40,15 @@ struct Thread {
   double to_mm = 0.0;
 };
 
-Thread thread_in(std::span<const BoreStretch> stretches, double nominal_mm, bool surely) {
+Thread thread_in(std::span<const BoreStretch> stretches, const MetricThread& size, bool surely) {
   Thread thread;
   for (const BoreStretch& stretch : stretches) {
     if (stretch.to_mm <= kCoincident_mm) continue;
     const bool is_core = !surely || likely_thread_of_hole(stretch.diameter_mm) != nullptr;
-    if (is_core && forms_thread(nominal_mm, stretch.diameter_mm)) {
+    if (is_core && thread_of_core_hole(stretch.diameter_mm) == &size) {
       return {true, stretch.hole, stretch.from_mm, stretch.to_mm};
     }
-    if (stretch.diameter_mm < nominal_mm - kShaftExcess_mm) return thread;
+    if (stretch.diameter_mm < size.nominal_mm - kShaftExcess_mm) return thread;
   }
   return thread;
 }
@@ -148,49 +59,66 @@ bool passes_all(std::span<const BoreStretch> stretches, double nominal_mm) {
   });
 }
 
-/// The lowest of a kind for a thread; nothing where there is none.
-std::optional<Fastener> lowest(std::span<const Fastener> fasteners, Fastener::Kind kind,
-                               double nominal_mm) {
+/// The lowest of those for which `is_wanted` holds; nothing where there is none.
+template <class Wanted>
+std::optional<Fastener> lowest(std::span<const Fastener> fasteners, const Wanted& is_wanted) {
   std::optional<Fastener> best;
   for (const Fastener& fastener : fasteners) {
-    if (fastener.kind != kind || fastener.nominal_mm != nominal_mm) continue;
+    if (!is_wanted(fastener)) continue;
     if (!best || fastener.length_mm < best->length_mm) best = fastener;
   }
   return best;
 }
 
-/// Lengths of screws that do, from under the head; empty where none can.
+std::optional<Fastener> lowest_washer(std::span<const Fastener> fasteners,
+                                      const MetricThread& size) {
+  return lowest(fasteners, [&](const Fastener& fastener) {
+    return fastener.kind == Fastener::Kind::Washer && fastener.nominal_mm == size.nominal_mm;
+  });
+}
+
+std::optional<Fastener> lowest_nut(std::span<const Fastener> fasteners, const MetricThread& size,
+                                   bool with_collar) {
+  return lowest(fasteners, [&](const Fastener& fastener) {
+    return fastener.kind == Fastener::Kind::Nut && has_thread(fastener, size) &&
+           fastener.has_collar == with_collar;
+  });
+}
+
+/// Lengths of screws that do, from under the head.
 struct Wanted {
   double least_mm = 0.0;  ///< of full threads
   double most_mm = -1.0;  ///< of the tip
   Fastening way;          ///< but for the screw
 };
 
-std::optional<Wanted> wanted_lengths(std::span<const BoreStretch> stretches,
-                                     std::span<const Fastener> fasteners, const MetricThread& size,
-                                     const FasteningOptions& options, bool surely) {
+/// For a thread in the bore, else for each nut that goes behind it; none where there is neither.
+std::vector<Wanted> wanted_lengths(std::span<const BoreStretch> stretches,
+                                   std::span<const Fastener> fasteners, const MetricThread& size,
+                                   const FasteningOptions& options, bool surely) {
   Wanted wanted;
-  double lift_mm = 0.0;
-  if (options.needs_washer) {
-    wanted.way.washer = lowest(fasteners, Fastener::Kind::Washer, size.nominal_mm);
-    if (wanted.way.washer) lift_mm = wanted.way.washer->length_mm;
-  }
-  const Thread thread = thread_in(stretches, size.nominal_mm, surely);
+  if (options.needs_washer) wanted.way.washer = lowest_washer(fasteners, size);
+  const double lift_mm = wanted.way.lift_mm();
+  const Thread thread = thread_in(stretches, size, surely);
   if (thread.is_reached) {
     wanted.way.thread = thread.hole;
     wanted.way.grip_mm = thread.from_mm + lift_mm;
     wanted.least_mm = wanted.way.grip_mm + options.engagement_in_diameters * size.nominal_mm;
     wanted.most_mm = thread.to_mm + lift_mm - kShortOfEnd * size.pitch_mm;
-    return wanted;
+    return {wanted};
   }
-  if (stretches.empty() || !passes_all(stretches, size.nominal_mm)) return std::nullopt;
-  wanted.way.nut = lowest(fasteners, Fastener::Kind::Nut, size.nominal_mm);
-  if (!wanted.way.nut) return std::nullopt;
-  wanted.way.grip_mm = stretches.back().to_mm + lift_mm;
-  const double end_mm = wanted.way.grip_mm + wanted.way.nut->length_mm;
-  wanted.least_mm = end_mm + kShortOfEnd * size.pitch_mm;
-  wanted.most_mm = end_mm + kMostBeyondNut * size.pitch_mm;
-  return wanted;
+  if (stretches.empty() || !passes_all(stretches, size.nominal_mm)) return {};
+  std::vector<Wanted> with_nut;
+  for (const bool with_collar : {false, true}) {
+    wanted.way.nut = lowest_nut(fasteners, size, with_collar);
+    if (!wanted.way.nut) continue;
+    wanted.way.grip_mm = stretches.back().to_mm + lift_mm;
+    const double end_mm = wanted.way.grip_mm + wanted.way.nut->length_mm;
+    wanted.least_mm = end_mm + kShortOfEnd * size.pitch_mm;
+    wanted.most_mm = end_mm + kMostBeyondNut * size.pitch_mm;
+    with_nut.push_back(wanted);
+  }
+  return with_nut;
 }
 
 /// `wanted` with one of the screws.
@@ -208,51 +136,93 @@ Fastening with_screw(const Wanted& wanted, const Fastener& screw, const MetricTh
   return way;
 }
 
-}  // namespace
-
-std::optional<Fastener> fastener_of(const Element& element) {
-  const std::string role = role_of(element.name);
-  if (role == "SCREW") return screw_of(element);
-  if (role == "WASHER") return ring_of(element, Fastener::Kind::Washer);
-  if (role == "NUT") return ring_of(element, Fastener::Kind::Nut);
-  if (role == "TEE") return tee_nut_of(element);
-  return std::nullopt;
+/// "a screw M12 has to be 42 mm of thread to 38 mm long, and there are 30, 40".
+std::string none_fits(const Wanted& wanted, const MetricThread& size, const std::string& there) {
+  return "a screw " + std::string(size.name) + " has to be " + text(wanted.least_mm) +
+         " mm of thread to " + text(wanted.most_mm) + " mm long, and there are " +
+         (there.empty() ? "none" : there);
 }
 
-namespace {
+/// The thickest first, of one diameter the coarse one.
+std::vector<const MetricThread*> sizes_to_try() {
+  std::vector<const MetricThread*> sizes;
+  for (const MetricThread& size : metric_threads()) sizes.push_back(&size);
+  std::ranges::stable_sort(sizes, std::greater<>(), &MetricThread::nominal_mm);
+  return sizes;
+}
 
 FasteningChoices choose(std::span<const BoreStretch> stretches, std::span<const Fastener> fasteners,
                         const FasteningOptions& options, bool surely) {
   FasteningChoices choices;
-  const auto& sizes = metric_threads();
   // The thickest thread first: it is what the bore was made for.
-  for (auto size = sizes.rbegin(); size != sizes.rend() && choices.ways.empty(); ++size) {
-    // A screw is told by its nominal diameter; the coarse pitch keeps it further from a thread's
-    // end.
-    if (thread_of_shaft(size->nominal_mm) != &*size) continue;
-    const auto wanted = wanted_lengths(stretches, fasteners, *size, options, surely);
-    if (!wanted) continue;
-    std::string there;
-    for (const Fastener& screw : fasteners) {
-      if (screw.kind != Fastener::Kind::Screw || screw.nominal_mm != size->nominal_mm) continue;
-      there += (there.empty() ? "" : ", ") + text(screw.length_mm);
-      if (screw.thread_end_mm < wanted->least_mm - kCoincident_mm ||
-          screw.length_mm > wanted->most_mm + kCoincident_mm) {
-        continue;
+  for (const MetricThread* size : sizes_to_try()) {
+    const auto ways = wanted_lengths(stretches, fasteners, *size, options, surely);
+    for (const Wanted& wanted : ways) {
+      std::string there;
+      for (const Fastener& screw : fasteners) {
+        if (screw.kind != Fastener::Kind::Screw || !has_thread(screw, *size)) continue;
+        there += (there.empty() ? "" : ", ") + text(screw.length_mm);
+        if (screw.thread_end_mm < wanted.least_mm - kCoincident_mm ||
+            screw.length_mm > wanted.most_mm + kCoincident_mm) {
+          continue;
+        }
+        choices.ways.push_back(with_screw(wanted, screw, *size));
       }
-      choices.ways.push_back(with_screw(*wanted, screw, *size));
+      if (wanted.way.nut && wanted.way.nut->has_collar && ways.size() > 1) continue;
+      choices.reason += (choices.reason.empty() ? "" : "; ") + none_fits(wanted, *size, there);
     }
-    choices.reason += (choices.reason.empty() ? "" : "; ") + std::string("a screw M") +
-                      text(size->nominal_mm) + " has to be " + text(wanted->least_mm) +
-                      " mm of thread to " + text(wanted->most_mm) + " mm long, and there are " +
-                      (there.empty() ? "none" : there);
     // A core hole that is reached is the thread to use; a nut goes on any thinner screw, too.
-    if (!wanted->way.nut) break;
+    if (!choices.ways.empty() || (!ways.empty() && !ways.front().way.nut)) break;
   }
   return choices;
 }
 
+/// What stands on the face on a T-bolt, without the bolt.
+std::vector<Fastening> stands_on_face(std::span<const Fastener> fasteners, const MetricThread& size,
+                                      double mouth_mm) {
+  std::vector<Fastening> stands;
+  const auto bears = [&](const Fastener& fastener) {
+    return fastener.head_diameter_mm > mouth_mm + kShaftExcess_mm;
+  };
+  Fastening way;
+  if (const auto nut = lowest_nut(fasteners, size, false)) {
+    way.nut = nut;
+    way.washer = lowest_washer(fasteners, size);
+    if (bears(way.washer ? *way.washer : *nut)) stands.push_back(way);
+  }
+  const std::optional<Fastener> plain_nut = way.nut;
+  way = {};
+  way.nut = lowest_nut(fasteners, size, true);
+  if (way.nut && bears(*way.nut)) stands.push_back(way);
+  if (!plain_nut) return stands;
+  way = {};
+  way.nut = plain_nut;
+  for (const Fastener& washer : fasteners) {
+    if (washer.kind != Fastener::Kind::SphericalWasher || washer.nominal_mm != size.nominal_mm ||
+        way.washer) {
+      continue;
+    }
+    // The narrowest seat that bears: the wide ones are for slotted holes.
+    for (const Fastener& seat : fasteners) {
+      if (seat.kind != Fastener::Kind::ConicalSeat || !bears(seat) ||
+          !pair_height_mm(washer, seat)) {
+        continue;
+      }
+      if (way.conical_seat && way.conical_seat->head_diameter_mm <= seat.head_diameter_mm) continue;
+      way.washer = washer;
+      way.conical_seat = seat;
+    }
+  }
+  if (way.washer) stands.push_back(way);
+  return stands;
+}
+
 }  // namespace
+
+double Fastening::lift_mm() const {
+  if (!washer) return 0.0;
+  return conical_seat ? pair_height_mm(*washer, *conical_seat).value() : washer->length_mm;
+}
 
 FasteningChoices choose_fastening(std::span<const BoreStretch> stretches,
                                   std::span<const Fastener> fasteners,
@@ -270,6 +240,52 @@ FasteningChoices choose_fastening(std::span<const BoreStretch> stretches,
   } else if (choices.reason.empty()) {
     choices.reason = "no thread of the bore can be reached, and no nut goes behind it";
   }
+  return choices;
+}
+
+FasteningChoices choose_tee_bolt(std::span<const BoreStretch> stretches,
+                                 std::span<const Fastener> fasteners, double shoulder_mm,
+                                 double mouth_mm) {
+  FasteningChoices choices;
+  for (const MetricThread* size : sizes_to_try()) {
+    std::string there;
+    std::vector<Fastener> bolts;
+    for (const Fastener& bolt : fasteners) {
+      if (bolt.kind != Fastener::Kind::TeeBolt || !has_thread(bolt, *size)) continue;
+      there += (there.empty() ? "" : ", ") + text(bolt.length_mm);
+      bolts.push_back(bolt);
+    }
+    if (bolts.empty() || !passes_all(stretches, size->nominal_mm)) continue;
+    std::ranges::stable_sort(bolts, {}, &Fastener::length_mm);
+    const std::vector<Fastening> stands = stands_on_face(fasteners, *size, mouth_mm);
+    for (Fastening way : stands) {
+      way.grip_mm = shoulder_mm + way.lift_mm();
+      way.engagement_mm = way.nut->length_mm;
+      const double least_mm =
+          way.grip_mm + way.nut->length_mm + kShortOfEnd * size->pitch_mm - kCoincident_mm;
+      const auto bolt = std::ranges::find_if(bolts, [&](const Fastener& candidate) {
+        return candidate.thread_end_mm >= least_mm && candidate.neck_height_mm <= way.grip_mm;
+      });
+      if (bolt == bolts.end()) {
+        choices.reason += (choices.reason.empty() ? "" : "; ") + std::string("a T-bolt ") +
+                          std::string(size->name) + " has to have " + text(least_mm) +
+                          " mm to the end of its thread, and there are " + there + " long";
+        continue;
+      }
+      way.screw = *bolt;
+      way.spare_mm = bolt->length_mm - way.grip_mm - way.nut->length_mm;
+      choices.ways.push_back(std::move(way));
+    }
+    if (stands.empty()) {
+      choices.reason += (choices.reason.empty() ? "" : "; ") + std::string("no nut ") +
+                        std::string(size->name) + " stands on the face beside a bore of " +
+                        text(mouth_mm) + " mm";
+    }
+  }
+  if (choices.ways.empty() && choices.reason.empty()) {
+    choices.reason = "no T-bolt goes through the bore";
+  }
+  if (!choices.ways.empty()) choices.reason.clear();
   return choices;
 }
 

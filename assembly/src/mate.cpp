@@ -251,10 +251,14 @@ Joint slot_joint(const MateFeatures& mate) {
     refuse_mate("no two opposite flat sides along " + quoted(key_feature) +
                 " make a key for slot " + quoted(slot));
   }
-  if (key.width_mm > slot.diameter_mm + kShaftExcess_mm) {
+  // What has no neck stands in the undercut.
+  const bool has_undercut = slot.slot->type == SlotShape::Type::Tee;
+  const double most_mm = has_undercut ? slot.slot->undercut_width_mm : slot.diameter_mm;
+  if (key.width_mm > most_mm + kShaftExcess_mm) {
     refuse_mate("the key along " + quoted(key_feature) + " is " + std::to_string(key.width_mm) +
                 " mm wide and does not go into slot " + quoted(slot) + ", which is " +
-                std::to_string(slot.diameter_mm) + " mm wide");
+                std::to_string(slot.diameter_mm) + " mm wide" +
+                (has_undercut ? ", and " + std::to_string(most_mm) + " below its throat" : ""));
   }
   const bool on_floor = key_feature.kind == FeatureKind::Face && !slot.through;
   Joint joint = free_joint(1);

@@ -31,20 +31,20 @@ std::vector<MoveReport> stack(Session& session, const StackPlan& plan, std::size
 /// What fastens the parts along a hole.
 struct FasteningPlan {
   FeatureName hole;
-  double seat_mm = 0.0;  ///< depth at which the head, or its washer, sits
-  /// On the axis, by depth; what `Fastening::thread` counts. Of a T-nut: the slot that it is in.
+  /// On the axis; what `Fastening::thread` counts. Last the T-slot, where there is one below.
   std::vector<FeatureName> holes;
   std::vector<Fastening> ways;  ///< best first; never empty
 };
 
-/// Screws, washers, nuts and T-nuts so named, of the family of the part, or of any where it has
-/// none. The head goes into the counterbore of the hole where it has one that is wide enough, else
-/// onto its face, with a washer where there is one. Where the bore ends over a T-slot, in its
-/// middle, a T-nut that fits the slot takes the screw, drawn up under the throat. Throws
+/// Fasteners so named (see `fastener_of`), each kind of the family of the part, or of any where it
+/// has none. A head goes into the counterbore of the hole where it has one that is wide enough,
+/// else onto its face, with a washer where there is one. Where the bore ends over a T-slot, in its
+/// middle, a T-nut that fits the slot takes the screw, drawn up under the throat; or a T-bolt comes
+/// up from there and takes a nut on the face. Ways that hold by 0.9 d come first. Throws
 /// Error{InvalidInput} with the reason and numbers where nothing fastens.
 FasteningPlan plan_fastening(Session& session, const FeatureName& hole);
 
-/// Places screw, washer and nut of `way` (from 0), mated with the hole and each other; without a
+/// Places the parts of `way` (from 0), mated with the hole and each other; without a
 /// command only tells what would come of it.
 std::vector<MoveReport> fasten(Session& session, const FasteningPlan& plan, std::size_t way,
                                std::optional<std::string_view> command);
