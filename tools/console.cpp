@@ -71,7 +71,8 @@ constexpr std::array kCommands{
             "INST by DX DY DZ | to X Y Z | along x|y|z|INST.FEATURE MM | "
             "turn DEG [about x|y|z|INST.FEATURE]; then [block|slide|warn|off]",
             "Moves an instance along what its mates leave free, with its unit and all that hangs "
-            "on it, to the first touch; `slide` goes on along what it meets.",
+            "on it, to the first touch; `slide` goes on along what it meets. Where it is part of a "
+            "linkage, the others follow.",
             "drag R1 by 60 0 0 slide", true, run_drag},
     Command{"snap", "INST [within MM] [take [N]]",
             "Lists the mates that fit for an instance near its goal, best first, or takes one.",

@@ -1,5 +1,6 @@
 // The words that move parts within their mates, and tell by which ways they come and go.
 
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -11,6 +12,8 @@
 
 namespace dowel::tools {
 namespace {
+
+constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
 
 /// block, slide, warn or off, where it comes next.
 std::optional<DragMode> take_drag_mode(Arguments& arguments) {
@@ -72,7 +75,15 @@ Reply run_drag(Console& console, Arguments& arguments) {
                   length_text(report.asked_mm_W.norm()) + " mm, by " +
                   point_text(report.allowed_mm_W);
   }
-  for (const std::string& name : move.moved_along) reply.text += "\n" + name + ": goes along";
+  // A turn that the mates end, by more than rounding.
+  if (!move.refused && std::abs(report.allowed_rad - request.turn_rad) > kParallel_rad) {
+    reply.text += "\n" + move.instance + ": its mates leave " +
+                  short_number(report.allowed_rad * kDegrees_per_rad) + " of " +
+                  short_number(request.turn_rad * kDegrees_per_rad) +
+                  " degrees; it can go no further";
+  }
+  for (const std::string& name : move.moved_along)
+    reply.text += "\n" + name + (report.is_linkage ? ": follows" : ": goes along");
   if (move.checked) reply.json["free_share"] = move.free_share;
   reply.json["slid"] = report.slid;
   reply.json["stopped_by"] = Json::array();

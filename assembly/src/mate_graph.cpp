@@ -86,6 +86,18 @@ PartNames sub_assembly_of(const ProjectState& state, const std::string& name) {
   return carried;
 }
 
+bool is_in_loop(const ProjectState& state, const PartNames& group) {
+  PartNames others;
+  for (const auto& [number, mate] : state.mates) {
+    if (!is_on(mate, group)) continue;
+    for (const std::string& part : parts_of(mate)) {
+      // No instance is called nothing.
+      if (!group.contains(part)) others.insert(state.find(part)->grounded ? "" : part);
+    }
+  }
+  return others.size() >= 2;
+}
+
 PartNames free_parts(const ProjectState& state, PartNames group, const std::string& held) {
   const std::size_t all = group.size();
   std::erase_if(group, [&](const std::string& part) { return state.find(part)->grounded; });

@@ -26,6 +26,10 @@ PartNames unit_of(const ProjectState& state, const std::string& name);
 /// `name` was mated to rather than what was mated to it.
 PartNames sub_assembly_of(const ProjectState& state, const std::string& name);
 
+/// Whether `group`, a sub-assembly, is in a loop of mates: it is mated with two others at least,
+/// where all that is grounded counts as one.
+bool is_in_loop(const ProjectState& state, const PartNames& group);
+
 /// Those of `group` that may move. Where none is grounded, `held` stays.
 PartNames free_parts(const ProjectState& state, PartNames group, const std::string& held);
 

@@ -230,31 +230,39 @@ std::vector<Freedom> Session::Impl::group_freedoms(const std::set<std::string>& 
   return freedoms_of(solve_mates(as_one), 0);
 }
 
-std::vector<Pose> Session::Impl::drag_frames(const DragRequest& request,
-                                             const std::vector<Freedom>& freedoms,
-                                             DragReport& report) {
-  const Instance& before = instance(request.instance);
-  const auto cannot = [&](const char* how) {
-    refuse(before.name + " cannot " + how + " like that: its mates leave it " + told(freedoms) +
-           "; `freedoms " + before.name + "` tells them");
-  };
-  if (request.turn_rad == 0.0) {
-    report.allowed_mm_W = allowed_slide(freedoms, request.by_mm_W);
-    if (report.allowed_mm_W.norm() <= kCoincident_mm) cannot("slide");
-    return {Pose(), Pose::from_translation(report.allowed_mm_W)};
-  }
+void Session::Impl::refuse_drag(const DragRequest& request, const std::vector<Freedom>& freedoms) {
+  refuse(request.instance + " cannot " + (request.turn_rad == 0.0 ? "slide" : "turn") +
+         " like that: its mates leave it " + told(freedoms) + "; see `freedoms " +
+         request.instance + "`");
+}
+
+std::optional<Vector3d> Session::Impl::turn_axis(const DragRequest& request,
+                                                 const std::vector<Freedom>& freedoms) {
   std::optional<Vector3d> axis_W = request.axis_W;
   for (const Freedom& freedom : freedoms) {
     if (request.axis_W || freedom.kind != Freedom::Kind::Turn) continue;
     if (axis_W) {
-      refuse(before.name + " can turn about more than one axis: name one with `about`");
+      refuse(request.instance + " can turn about more than one axis: name one with `about`");
     }
     axis_W = freedom.axis_W;
   }
-  std::optional<ScrewMotion> screw;
+  return axis_W;
+}
+
+std::optional<std::vector<Pose>> Session::Impl::drag_frames(const DragRequest& request,
+                                                            const std::vector<Freedom>& freedoms,
+                                                            DragReport& report) {
+  const Instance& before = instance(request.instance);
+  if (request.turn_rad == 0.0) {
+    report.allowed_mm_W = allowed_slide(freedoms, request.by_mm_W);
+    if (report.allowed_mm_W.norm() <= kCoincident_mm) return std::nullopt;
+    return std::vector<Pose>{Pose(), Pose::from_translation(report.allowed_mm_W)};
+  }
   const Vector3d point_W = request.point_W.value_or(before.X_WI.translation());
-  if (axis_W) screw = allowed_turn(freedoms, *axis_W, point_W);
-  if (!screw) cannot("turn");
+  const auto axis_W = turn_axis(request, freedoms);
+  const auto screw = axis_W ? allowed_turn(freedoms, *axis_W, point_W) : std::nullopt;
+  if (!screw) return std::nullopt;
+  report.allowed_rad = request.turn_rad;
   return screw_path(*screw, request.turn_rad, before.X_WI * element(before.element).obb.center);
 }
 
@@ -293,12 +301,19 @@ ProjectState Session::Impl::dragged(const std::vector<PlacedBodies::Part>& parts
     expect_in_reach(X_WI, part.name);
     next.instances.at(part.name).X_WI = settled(X_WI);
   }
-  for (const auto& [number, mate] : state().mates) {
-    if (!holds(mate, state()) || holds(mate, next)) continue;
-    refuse(parts_U.front().name + " is free to move like that for a start only: mate " +
-           std::to_string(number) + " would no longer hold; ask for less");
-  }
   return next;
+}
+
+bool Session::Impl::keeps_mates(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU) {
+  const ProjectState next = dragged(parts_U, X_WU);
+  PartNames moved;
+  for (const PlacedBodies::Part& part : parts_U) moved.insert(part.name);
+  return std::ranges::all_of(state().mates, [&](const auto& entry) {
+    const PartNames on = parts_of(entry.second);
+    const bool may_change =
+        std::ranges::any_of(on, [&](const std::string& part) { return moved.contains(part); });
+    return !may_change || !holds(entry.second, state()) || holds(entry.second, next);
+  });
 }
 
 DragReport Session::drag(const DragRequest& request, std::string_view command) {
@@ -308,7 +323,12 @@ DragReport Session::drag(const DragRequest& request, std::string_view command) {
   const DragMode mode = drag_mode(request, state().mode);
   DragReport report;
   report.asked_mm_W = request.by_mm_W;
-  const std::vector<Pose> X_WU = impl_->drag_frames(request, freedoms, report);
+  const auto frames = impl_->drag_frames(request, freedoms, report);
+  if (!frames) {
+    if (!is_in_loop(state(), group)) impl_->refuse_drag(request, freedoms);
+    return impl_->drag_linkage(request, mode, command);
+  }
+  const std::vector<Pose>& X_WU = *frames;
 
   MoveReport& move = report.move;
   move.instance = before.name;
@@ -316,6 +336,9 @@ DragReport Session::drag(const DragRequest& request, std::string_view command) {
   impl_->bodies.follow(state());
   const auto parts_U = impl_->parts(group, before.name, X_WU.front());
   expect_in_reach(X_WU.back() * parts_U.front().pose, before.name);
+  if (!impl_->keeps_mates(parts_U, X_WU.back())) {
+    return impl_->drag_linkage(request, mode, command);
+  }
   Pose X_WU_end = X_WU.back();
   const auto touches_at = [&](const Pose& at) {
     return impl_->check_parts(parts_U, at, state().tolerance_mm);

@@ -13,6 +13,7 @@
 
 #include "dowel/assembly/session.h"
 #include "dowel/kernel/error.h"
+#include "linkage.h"
 #include "placed_bodies.h"
 
 namespace dowel {
@@ -114,15 +115,32 @@ struct Session::Impl {
   std::vector<Touch> check_parts(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU,
                                  double tolerance_mm);
 
-  /// The way of a drag, as frames; fills in what the mates leave of it. Throws
-  /// Error{InvalidInput} where they leave nothing.
-  std::vector<Pose> drag_frames(const DragRequest& request, const std::vector<Freedom>& freedoms,
-                                DragReport& report);
+  /// The way of a drag, as frames; fills in what the mates leave of it. Nothing where they leave
+  /// nothing as long as all other parts stay.
+  std::optional<std::vector<Pose>> drag_frames(const DragRequest& request,
+                                               const std::vector<Freedom>& freedoms,
+                                               DragReport& report);
+  /// The axis of a turn: that asked for, else the only one; nothing where none is free. Throws
+  /// Error{InvalidInput} where there are several.
+  std::optional<Eigen::Vector3d> turn_axis(const DragRequest& request,
+                                           const std::vector<Freedom>& freedoms);
+  [[noreturn]] void refuse_drag(const DragRequest& request, const std::vector<Freedom>& freedoms);
+  /// Whether all mates that hold go on holding where the parts are moved so.
+  bool keeps_mates(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU);
   /// How far a drag gets; fills in what stopped it.
   Pose drag_end(const std::vector<PlacedBodies::Part>& parts_U, const std::vector<Pose>& X_WU,
                 const std::vector<Freedom>& freedoms, DragMode mode, DragReport& report);
-  /// The state with the parts there. Throws Error{InvalidInput} where a mate would be lost.
+  /// The state with the parts there.
   ProjectState dragged(const std::vector<PlacedBodies::Part>& parts_U, const Pose& X_WU);
+
+  /// All that hang together with a part, as bodies and mates.
+  NamedProblem linkage_of(const std::string& name);
+  LinkagePath linkage_way(const DragRequest& request, const NamedProblem& linkage);
+  /// Ends the path where something is met.
+  void stop_linkage(LinkagePath& path, const NamedProblem& linkage, DragMode mode,
+                    DragReport& report);
+  /// A drag in which the other parts do not stay.
+  DragReport drag_linkage(const DragRequest& request, DragMode mode, std::string_view command);
 
   /// Along the mates of a group with others.
   std::vector<WayDirection> mate_directions(const ProjectState& in,

@@ -113,7 +113,9 @@ struct DragReport {
   MoveReport move;
   Eigen::Vector3d asked_mm_W = Eigen::Vector3d::Zero();    ///< slide, as asked
   Eigen::Vector3d allowed_mm_W = Eigen::Vector3d::Zero();  ///< what the mates leave of it
+  double allowed_rad = 0.0;                                ///< turn: what the mates leave of it
   bool slid = false;                                       ///< went along what it met
+  bool is_linkage = false;  ///< other parts moved on ways of their own
 };
 
 /// A straight way of a part, with what moves with it, from where it is to clear of everything.
@@ -232,8 +234,10 @@ class Session {
                     const Eigen::Vector3d& axis_W, double angle_rad, std::string_view command);
   /// Moves an instance along what its mates leave free, with its unit and all that hangs on the
   /// rest of the project by it alone: the allowed motion nearest to the one asked for, swept, to
-  /// the first touch or as the mode says. Mates that hold go on holding. Throws
-  /// Error{InvalidInput} where the mates leave nothing of it.
+  /// the first touch or as the mode says. Where its mates leave it nothing so, but all that hang
+  /// together with it can follow, as in a linkage, they do, each swept on a way of its own; a turn
+  /// goes as far as they let it, a slide to the place nearest to the goal on the curve. Mates that
+  /// hold go on holding. Throws Error{InvalidInput} where the mates leave nothing of it.
   DragReport drag(const DragRequest& request, std::string_view command);
   /// The mates that went with it.
   std::vector<Mate> remove(std::string_view name, std::string_view command);
