@@ -109,8 +109,10 @@ class Walk {
       const Vector3d allowed_mm = allowed_slide(freedoms(), rest_mm);
       if (allowed_mm.norm() <= kArrived_mm) break;
       const double step_mm = std::min(share * kSlide_mm, allowed_mm.norm());
-      const bool went =
-          go(slid_by(step_mm * allowed_mm.normalized()), last_mm == 0.0 ? 0.0 : step_mm / last_mm);
+      const Vector3d by_mm = step_mm * allowed_mm.normalized();
+      const double of_last = last_mm == 0.0 ? 0.0 : step_mm / last_mm;
+      // Without a turn, where the mates let it.
+      const bool went = go(slid_by(by_mm, true), of_last) || go(slid_by(by_mm, false), of_last);
       if (!went || (goal_W - origin_W()).norm() >= rest_mm.norm()) {
         if (went) path_.steps.pop_back();
         share *= 0.5;
@@ -153,10 +155,14 @@ class Walk {
   }
 
   /// Its origin by so much along `by_mm`; aside as the mates ask.
-  Joint slid_by(const Vector3d& by_mm) const {
+  Joint slid_by(const Vector3d& by_mm, bool holds_turn) const {
     Joint joint = driver();
     joint.holds_slide = {false, false, true};
     joint.X_BG = frame_on_axis(origin_W() + by_mm, by_mm.normalized(), by_mm.unitOrthogonal());
+    joint.holds_tilt = holds_turn;
+    joint.holds_spin = holds_turn;
+    joint.X_AF =
+        Pose(now()[drive_.body].rotation().conjugate() * joint.X_BG.rotation(), Vector3d::Zero());
     return joint;
   }
 

@@ -52,6 +52,21 @@ ProjectElement tee_nut(const std::string& name, double core_mm) {
        face("f5", {0, 11, 4}, Vector3d::UnitY()), face("f6", {0, -11, 4}, -Vector3d::UnitY())});
 }
 
+/// 22 x 22 x 6 without a neck; a round one has no flat sides.
+ProjectElement low_nut(bool is_round) {
+  const auto face = [](const std::string& of, const Vector3d& origin, const Vector3d& normal) {
+    return testing::face_feature(of, origin, normal, 100.0);
+  };
+  std::vector<Feature> features{
+      testing::hole_feature("h1", {0, 0, 6}, -Vector3d::UnitZ(), {{10.106, 6.0}}, true),
+      face("top", {0, 0, 6}, Vector3d::UnitZ()), face("bottom", {0, 0, 0}, -Vector3d::UnitZ())};
+  if (!is_round) {
+    features.push_back(face("f1", {0, 11, 3}, Vector3d::UnitY()));
+    features.push_back(face("f2", {0, -11, 3}, -Vector3d::UnitY()));
+  }
+  return testing::element_of("S/tee-nut-M12-low", testing::box({22, 22, 6}), features);
+}
+
 ProjectElement screw(int length_mm) {
   const double length = length_mm;
   return testing::element_of(
@@ -79,6 +94,17 @@ ProjectElement riser(bool has_key_slot) {
   return riser;
 }
 
+void write_catalog(const std::filesystem::path& file, const std::vector<ProjectElement>& elements) {
+  dowel::Catalog catalog(file, dowel::Catalog::Access::ReadWrite);
+  for (const ProjectElement& element : elements) {
+    dowel::SourceRecord source;
+    source.path = element.element.source;
+    source.status = "ok";
+    const std::vector<dowel::ElementRecord> records{{element.element, *element.solid, {}}};
+    catalog.put(source, records);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("over a T-slot a screw is chosen with the T-nut that fits the slot") {
@@ -86,18 +112,9 @@ TEST_CASE("over a T-slot a screw is chosen with the T-nut that fits the slot") {
   CAPTURE(has_key_slot);
   testing::Workshop shop;
   const auto file = shop.folder / "slots.db";
-  {
-    dowel::Catalog catalog(file, dowel::Catalog::Access::ReadWrite);
-    for (const ProjectElement& element :
-         {slot_plate(), tee_nut("S/tee-nut-M12", 10.106), tee_nut("S/tee-nut-M10", 8.376),
-          screw(50), screw(60), screw(70), riser(has_key_slot)}) {
-      dowel::SourceRecord source;
-      source.path = element.element.source;
-      source.status = "ok";
-      const std::vector<dowel::ElementRecord> records{{element.element, *element.solid, {}}};
-      catalog.put(source, records);
-    }
-  }
+  write_catalog(file,
+                {slot_plate(), tee_nut("S/tee-nut-M12", 10.106), tee_nut("S/tee-nut-M10", 8.376),
+                 screw(50), screw(60), screw(70), riser(has_key_slot)});
   dowel::Session session{dowel::Project()};
   session.use_catalog(
       std::make_shared<const dowel::Catalog>(file, dowel::Catalog::Access::ReadOnly));
@@ -135,4 +152,36 @@ TEST_CASE("over a T-slot a screw is chosen with the T-nut that fits the slot") {
   // Beside the middle no T-nut can be under the hole.
   session.move("RISER", {8, 33, 60}, "move");
   CHECK_THROWS_AS(dowel::plan_fastening(session, {"RISER", "h1"}), dowel::Error);
+}
+
+TEST_CASE(
+    "a nut without a neck is drawn up in the undercut, where its corners keep it from turning") {
+  const bool is_round = GENERATE(false, true);
+  testing::Workshop shop;
+  const auto file = shop.folder / "slots.db";
+  write_catalog(file,
+                {slot_plate(), low_nut(is_round), screw(60), screw(63), screw(70), riser(false)});
+  dowel::Session session{dowel::Project()};
+  session.use_catalog(
+      std::make_shared<const dowel::Catalog>(file, dowel::Catalog::Access::ReadOnly));
+  session.set_mode(dowel::CheckMode::Off, "mode off");
+  session.place("S/plate-T14", "PLATE", Pose(), "place");
+  session.place("T/riser-60x60x40", "RISER", Pose::from_translation({33, 0, 60}), "place");
+  if (is_round) {
+    CHECK_THROWS_WITH(dowel::plan_fastening(session, {"RISER", "h1"}),
+                      Catch::Contains("no T-nut fits slot PLATE.slot1"));
+    return;
+  }
+  const FasteningPlan plan = dowel::plan_fastening(session, {"RISER", "h1"});
+  // 56 mm to the nut, all 6 of it, and a pitch above the floor at 66: 62 to 64.25.
+  REQUIRE(plan.ways.size() == 1);
+  CHECK(plan.ways[0].screw.element == "S/screw-M12x63");
+  CHECK(plan.ways[0].engagement_mm == Approx(6.0));
+  dowel::fasten(session, plan, 0, "fasten");
+  // Its top under the throat, at z = 44.
+  CHECK((session.instance("TEE1").X_WI.translation() - Vector3d(33, 0, 38)).norm() <
+        testing::kExact_mm);
+  for (const auto& [number, mate] : session.state().mates) {
+    CHECK(session.residual(mate).axis_mm < testing::kExact_mm);
+  }
 }

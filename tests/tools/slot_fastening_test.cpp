@@ -158,6 +158,37 @@ TEST_CASE("U12: a T-bolt comes up from the slot and takes washer and nut on the 
   for (std::size_t way = 0; way < plan.ways.size(); ++way) check_placed(bench.session, plan, way);
 }
 
+TEST_CASE("a riser is dragged along its slot with what fastens it, and does not turn") {
+  Bench bench("U12", "plate-4x4", "riser-120x60x60", 30.0);
+  Session& session = bench.session;
+  session.mate({.kind = MateKind::FaceOnFace,
+                .moving = {"RISER", "bottom"},
+                .fixed = {"PLATE", bench.face_up("PLATE")},
+                .seat = {},
+                .options = {}},
+               "mate");
+  const auto placed =
+      fasten(session, plan_fastening(session, {"RISER", bench.screw_hole()}), 0, "f");
+  std::vector<Pose> before;
+  for (const MoveReport& report : placed) before.push_back(report.X_WI);
+  DragRequest request;
+  request.instance = "RISER";
+  request.by_mm_W = {10.0, 0.0, 0.0};
+  const DragReport report = session.drag(request, "drag");
+  CHECK_FALSE(report.move.refused);
+  CHECK(report.move.verdict == Verdict::Contact);
+  CHECK(report.move.moved_along.size() == placed.size());
+  const Pose& X_WR = session.instance("RISER").X_WI;
+  CHECK((X_WR.translation() - Eigen::Vector3d(10.0, 30.0, 60.0)).norm() < 1e-9);
+  CHECK(X_WR.rotation().angularDistance(Eigen::Quaterniond::Identity()) < 1e-12);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    CAPTURE(placed[i].instance);
+    const Pose& X_WI = session.instance(placed[i].instance).X_WI;
+    CHECK((X_WI.translation() - before[i].translation() - Eigen::Vector3d(10.0, 0.0, 0.0)).norm() <
+          1e-9);
+  }
+}
+
 TEST_CASE("T14: screw and T-nut first, T-bolts as alternatives, no nut of another pitch") {
   Bench bench("T14", "plate-4x315", "riser-126x63x63", 31.5);
   const FasteningPlan plan = plan_fastening(bench.session, {"RISER", bench.screw_hole()});

@@ -26,7 +26,8 @@ namespace dowel {
 ///
 /// The first four are what `insert` makes of two features, FaceOnFace is a seat. Align is for the
 /// second hole of a pattern. A key is the part of A between two opposite flat faces, the widest
-/// that go in between the walls of the slot; it stands in its middle, along its run.
+/// that go in between the walls of the slot, or else of a T-slot's undercut; it stands in its
+/// middle, along its run.
 ///
 /// A through hole slides over a shaft in the sense that turns the part least; a blind one with its
 /// opening first.
