@@ -182,7 +182,9 @@ Reply run_fit(Console& console, Arguments& arguments) {
     const Feature& shaft_feature = *console.session().feature(shaft).feature;
     const Feature& hole_feature = *console.session().feature(hole).feature;
     if (shaft_feature.kind != FeatureKind::Shaft || hole_feature.kind != FeatureKind::Hole) {
-      arguments.fail_at_last("expected a shaft and a hole");
+      arguments.fail_at_last("expected a shaft and then a hole, but " + shaft.text() + " is a " +
+                             std::string(to_string(shaft_feature.kind)) + " and " + hole.text() +
+                             " is a " + std::string(to_string(hole_feature.kind)));
     }
     reply.text = drawn_fit_text(shaft_feature, hole_feature);
     reply.json = drawn_fit_json(shaft_feature, hole_feature);

@@ -46,6 +46,9 @@ DragRequest read_drag(Console& console, Arguments& arguments) {
   } else {
     arguments.fail("expected `by`, `to`, `along` or `turn`");
   }
+  if (request.turn_rad == 0.0 && request.by_mm_W.norm() <= kCoincident_mm) {
+    arguments.fail_at_last(request.instance + " is there already");
+  }
   request.mode = take_drag_mode(arguments);
   return request;
 }

@@ -2,7 +2,9 @@
 // project.
 
 #include <algorithm>
+#include <filesystem>
 #include <numbers>
+#include <system_error>
 
 #include "console_commands.h"
 #include "console_read.h"
@@ -34,9 +36,25 @@ Pose read_place(Console& console, Arguments& arguments) {
 
 }  // namespace
 
+namespace {
+
+/// Whether a file is that of the open project, which nobody else can open meanwhile.
+bool is_at_hand(Console& console, const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::path& own = console.session().project().file();
+  return !own.empty() && std::filesystem::equivalent(file, own, ignored);
+}
+
+}  // namespace
+
 Reply run_unit(Console& console, Arguments& arguments) {
   std::vector<std::string> names;
-  while (!arguments.at_end()) names.push_back(read_instance(console, arguments));
+  while (!arguments.at_end()) {
+    names.push_back(read_instance(console, arguments));
+    if (std::ranges::count(names, names.back()) > 1) {
+      arguments.fail_at_last(names.back() + " is named twice");
+    }
+  }
   if (names.empty()) arguments.fail("expected an instance");
   Reply reply;
   if (names.size() > 1) {
@@ -69,6 +87,9 @@ Reply run_save_unit(Console& console, Arguments& arguments) {
 
 Reply run_insert_unit(Console& console, Arguments& arguments) {
   const std::string file = arguments.word("the file of a unit");
+  if (is_at_hand(console, file)) {
+    arguments.fail_at_last(file + " is the project at hand; `save-unit` writes a part of it");
+  }
   const Project unit = arguments.located([&] { return Project::open(file); });
   std::string prefix;
   Pose X_WU;
@@ -115,6 +136,27 @@ Reply run_insert_unit(Console& console, Arguments& arguments) {
   return reply;
 }
 
+namespace {
+
+/// Interferences of parts as they stand, by the one that was placed first.
+void add_entered(const std::vector<Touch>& entered, Reply& reply) {
+  reply.json["interfering"] = Json::array();
+  std::string last;
+  for (const Touch& touch : entered) {
+    if (last.empty()) {
+      reply.text +=
+          "\nthese interfere as they stand, and no way is free for parts that do; `check` tells "
+          "where:";
+    }
+    reply.text += touch.instance == last ? ", " : "\n  " + touch.instance + " with ";
+    reply.text += touch.with;
+    last = touch.instance;
+    reply.json["interfering"].push_back({touch.instance, touch.with});
+  }
+}
+
+}  // namespace
+
 Reply run_sequence(Console& console, Arguments& arguments) {
   arguments.expect_end();
   const AssemblySequence sequence = plan_sequence(console.session());
@@ -122,7 +164,11 @@ Reply run_sequence(Console& console, Arguments& arguments) {
   reply.json["base"] = sequence.base;
   reply.json["steps"] = Json::array();
   reply.json["blocked"] = Json::array();
-  reply.text = "base: " + names_text(sequence.base);
+  reply.text = sequence.base.empty() ? "there are no parts" : "base: " + names_text(sequence.base);
+  const auto& instances = console.session().state().instances;
+  if (!sequence.base.empty() && !instances.at(sequence.base.front()).grounded) {
+    reply.text += ", placed first; nothing is grounded";
+  }
   for (const AssemblyStep& step : sequence.steps) {
     const Eigen::Vector3d in_W = -step.way.direction_W;
     reply.json["steps"].push_back({{"parts", step.parts},
@@ -136,15 +182,14 @@ Reply run_sequence(Console& console, Arguments& arguments) {
   for (const BlockedPart& part : sequence.blocked) {
     Json json{{"part", part.part}, {"ways", Json::array()}};
     reply.text += "\ncannot be brought in: " + part.part;
+    if (part.ways.empty()) reply.text += "; no mate and no base gives it a way";
     for (const WayOut& way : part.ways) {
-      Json blockers = Json::array();
-      for (const Touch& touch : way.blocked_by) blockers.push_back(touch.with);
-      json["ways"].push_back({{"along", way.along}, {"blocked_by", std::move(blockers)}});
-      reply.text += "\n  along " + way.along + " (" + point_text(way.direction_W) +
-                    "): " + tools::names_text(way.blocked_by) + " in the way";
+      json["ways"].push_back(to_json(way));
+      reply.text += "\n  " + way_text(way);
     }
     reply.json["blocked"].push_back(std::move(json));
   }
+  add_entered(sequence.entered, reply);
   reply.has_findings = !sequence.blocked.empty();
   return reply;
 }
@@ -172,6 +217,7 @@ void add_changes(const std::vector<std::pair<Instance, Instance>>& changed, Repl
 Reply run_diff(Console& console, Arguments& arguments) {
   const std::string first = arguments.word("a project file");
   const auto state_of = [&](const std::string& file) {
+    if (is_at_hand(console, file)) return console.session().state();
     return arguments.located([&] { return read_project_state(file); });
   };
   const ProjectState a = state_of(first);

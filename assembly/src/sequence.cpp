@@ -46,10 +46,20 @@ class Dismantler {
     for (const std::string& part : left_) {
       sequence.blocked.push_back({part, session_.ways_out(part, {.without = gone_})});
     }
+    if (!left_.empty()) sequence.entered = entered();
     return sequence;
   }
 
  private:
+  std::vector<Touch> entered() const {
+    std::vector<Touch> all = session_.check_all();
+    std::erase_if(all, [&](const Touch& touch) {
+      return touch.pair.verdict != Verdict::Interference || gone_.contains(touch.instance) ||
+             gone_.contains(touch.with);
+    });
+    return all;
+  }
+
   /// The part to go next, alone or with what hangs on it; nothing where all are blocked.
   std::optional<AssemblyStep> next_step(bool with_sub_assembly) {
     for (const bool may_carry : {false, true}) {

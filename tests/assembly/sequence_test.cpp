@@ -119,3 +119,22 @@ TEST_CASE("a unit comes in as one") {
   REQUIRE(sequence.steps.size() == 1);
   CHECK(sequence.steps.front().parts == std::vector<std::string>{"RISER", "LID"});
 }
+
+TEST_CASE("parts that are in one place are told, for no way can be free for them") {
+  Workshop shop;
+  shop.session.set_mode(dowel::CheckMode::Off, "mode off");
+  shop.place("T/block-40", "A", {-20, 0, 60});
+  shop.place("T/block-40", "B", {10, 0, 60});  // 10 mm of both in one place
+  shop.place("T/block-40", "C", {80, 0, 60});
+  const AssemblySequence sequence = dowel::plan_sequence(shop.session);
+  CHECK(order_of(sequence) == std::vector<std::string>{"C"});
+  REQUIRE(sequence.blocked.size() == 2);
+  REQUIRE(sequence.entered.size() == 1);
+  CHECK(sequence.entered[0].instance == "A");
+  CHECK(sequence.entered[0].with == "B");
+  CHECK(sequence.entered[0].pair.depth_mm > 0.0);
+  // Where nothing is blocked, nothing is told.
+  shop.place("T/block-40", "D", {-100, -55, 60});
+  shop.session.remove("A", "remove");
+  CHECK(dowel::plan_sequence(shop.session).entered.empty());
+}

@@ -164,6 +164,12 @@ save second.dwp
   CHECK(json["mates_added"].size() == 1);
   CHECK(json["removed"].empty());
   CHECK(desk.run({"diff", "first.dwp", "nowhere.dwp"}).exit_code == 3);
+  // The project at hand is compared as it is, though its file is locked, and is no unit of its own.
+  const auto own = desk.run({"diff", "second.dwp", "--project", "second.dwp"});
+  CHECK(own.out == "no difference\n");
+  const auto itself = desk.run({"insert-unit", "second.dwp", "--project", "second.dwp"});
+  CHECK(itself.exit_code == 3);
+  CHECK(itself.err.find("is the project at hand") != std::string::npos);
 }
 
 TEST_CASE("parts that stand mated are recognised at the prompt, once") {
@@ -185,6 +191,22 @@ freedoms R
   CHECK(has(result, "R: turns about z at 40 0 "));
 }
 
+TEST_CASE("a sequence says which parts interfere as they stand, for they have no way") {
+  const Desk desk;
+  const auto result = desk.script(R"(mode off
+place T/block-40 as A at 0 0 60
+place T/block-40 as C at 200 0 60
+place T/block-40 as B at 30 0 60
+sequence
+)");
+  INFO(result.out << result.err);
+  CHECK(has(result, "base: A, placed first; nothing is grounded\n1. C: by "));
+  CHECK(has(result, "cannot be brought in: B\n  along A (0 0 1): blocked by A after 0 of 41 mm"));
+  CHECK(has(result,
+            "these interfere as they stand, and no way is free for parts that do; `check` tells "
+            "where:\n  A with B\n"));
+}
+
 TEST_CASE("the words about motion say what is wrong and where") {
   const Desk desk;
   struct BadLine {
@@ -195,6 +217,8 @@ TEST_CASE("the words about motion say what is wrong and where") {
            BadLine{"drag Q by 1 0 0", "no instance is called \"Q\""},
            BadLine{"drag R sideways", "expected `by`, `to`, `along` or `turn`"},
            BadLine{"drag R turn 0", "a turn is not of 0 degrees"},
+           BadLine{"drag R by 0 0 0", "R is there already"},
+           BadLine{"unit R B R", "R is named twice"},
            BadLine{"drag R by 1 0 0 bounce", "bounce"},
            BadLine{"snap R within -1", "a distance is more than 0"},
            BadLine{"snap B take 99", "`snap B` lists them"},

@@ -26,6 +26,9 @@ struct AssemblySequence {
   std::vector<AssemblyStep> steps;  ///< in order of assembly
   /// Parts that block each other when all that `steps` has is gone; empty where it can be done.
   std::vector<BlockedPart> blocked;
+  /// Interferences of blocked parts, with each other and with what is not gone, as they stand: no
+  /// way is free as long as two parts are in one place.
+  std::vector<Touch> entered;
 };
 
 /// An order in which each part can be brought in on a straight way past those that are there: along
