@@ -1,5 +1,6 @@
 // Facts about what tools reach.
 
+#include <cmath>
 #include <numbers>
 
 #include "fact_source.h"
@@ -9,13 +10,21 @@ namespace {
 
 constexpr double kDegrees_per_rad = 180.0 / std::numbers::pi;
 
+/// NULL of nuts, and of screws without a head.
+FactValue length_mm(FactSource& source, const std::string& fastener) {
+  const auto& drive = source.drive(source.state().find(fastener)->element);
+  if (!drive || drive->is_nut || !std::isfinite(drive->seat_mm)) return {};
+  return drive->seat_mm - drive->low_mm;
+}
+
 FactRows wrenches(FactSource& source) {
   FactRows rows;
   for (const WrenchAccess& access : source.wrenches()) {
-    rows.push_back(
-        {access.fastener, access.wrench, truth(access.before_workpiece), truth(access.is_free),
-         text_or_null(access.blocked_by), access.lever_mm, kDegrees_per_rad * access.swing_rad,
-         access.comes_in ? truth(*access.comes_in) : FactValue(), text_or_null(access.stopped_by)});
+    rows.push_back({access.fastener, access.wrench, truth(access.before_workpiece),
+                    truth(access.is_free), text_or_null(access.blocked_by), access.lever_mm,
+                    kDegrees_per_rad * access.swing_rad,
+                    access.comes_in ? truth(*access.comes_in) : FactValue(),
+                    text_or_null(access.stopped_by), length_mm(source, access.fastener)});
   }
   return rows;
 }
@@ -68,7 +77,8 @@ std::vector<FactTable> access_facts() {
         {"lever_mm", "length of the lever"},
         {"swing_deg", "the widest angle through which the lever turns freely"},
         {"comes_in", "1: the screw comes straight along its axis; NULL of nuts"},
-        {"stopped_by", "the first part in the screw's way; NULL where there is none"}},
+        {"stopped_by", "the first part in the screw's way; NULL where there is none"},
+        {"length_mm", "of a screw from under its head to its tip; NULL without head, and of nuts"}},
        kFromFixture,
        wrenches},
   };

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <exception>
-#include <map>
 #include <new>
-#include <optional>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include <sqlite3.h>
@@ -16,6 +12,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "fact_call.h"
+#include "fact_module.h"
 
 namespace dowel {
 namespace {
@@ -35,219 +32,6 @@ constexpr std::array<std::string_view, 16> kRefusedFunctions{
     "date",    "datetime",      "julianday",      "last_insert_rowid",
     "random",  "randomblob",    "load_extension", "strftime",
     "time",    "total_changes", "unixepoch",      "zeroblob"};
-
-}  // namespace
-
-/// One virtual table and its indices, made when a query first looks something up.
-struct FactModule {
-  /// Rows by the texts that they have in the index's columns.
-  using Index = std::unordered_map<std::string, std::vector<std::size_t>>;
-
-  FactDatabase::RowsOf* rows = nullptr;
-  std::size_t table = 0;
-  std::exception_ptr* thrown = nullptr;
-  std::map<unsigned, Index> indices;  ///< by the bits of their columns
-
-  const Index& index(unsigned columns) {
-    const auto [entry, is_new] = indices.try_emplace(columns);
-    if (is_new) {
-      const FactRows& all = (*rows)(table);
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        if (const auto key = key_of(all[i], columns)) entry->second[*key].push_back(i);
-      }
-    }
-    return entry->second;
-  }
-
-  static void add_to_key(std::string& key, std::string_view text) {
-    key += std::to_string(text.size());
-    key += ':';
-    key += text;
-  }
-
-  /// Nothing where a column holds no text: it equals none.
-  static std::optional<std::string> key_of(const FactRow& row, unsigned columns) {
-    std::string key;
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      if ((columns >> column & 1U) == 0) continue;
-      const auto* const text = std::get_if<std::string>(&row[column]);
-      if (text == nullptr) return std::nullopt;
-      add_to_key(key, *text);
-    }
-    return key;
-  }
-};
-
-/// Bits of an index that SQLite keeps as an int.
-constexpr int kMaxIndexColumns = 31;
-
-namespace {
-
-struct VirtualTable : sqlite3_vtab {
-  FactModule* module = nullptr;
-};
-
-struct Cursor : sqlite3_vtab_cursor {
-  const FactRows* rows = nullptr;
-  const std::vector<std::size_t>* found = nullptr;  // those of an index; all where none was asked
-  std::size_t next = 0;
-
-  std::size_t size() const { return found != nullptr ? found->size() : rows->size(); }
-  std::size_t row() const { return found != nullptr ? (*found)[next] : next; }
-};
-
-FactModule& module_of(sqlite3_vtab_cursor* cursor) {
-  return *static_cast<VirtualTable*>(cursor->pVtab)->module;
-}
-
-int connect(sqlite3* database, void* module, int, const char* const*, sqlite3_vtab** table,
-            char**) {
-  auto* const facts = static_cast<FactModule*>(module);
-  std::string sql = "CREATE TABLE x(";
-  for (const FactColumn& column : fact_tables()[facts->table].columns) {
-    sql += (sql.back() == '(' ? "\"" : ", \"") + std::string(column.name) + "\"";
-  }
-  if (const int code = sqlite3_declare_vtab(database, (sql + ")").c_str()); code != SQLITE_OK) {
-    return code;
-  }
-  auto made = std::make_unique<VirtualTable>();
-  made->module = facts;
-  *table = made.release();
-  return SQLITE_OK;
-}
-
-int disconnect(sqlite3_vtab* table) {
-  const std::unique_ptr<VirtualTable> owned(static_cast<VirtualTable*>(table));
-  return SQLITE_OK;
-}
-
-/// Equalities are looked up in an index of their columns; SQLite tests them all again.
-int best_index(sqlite3_vtab*, sqlite3_index_info* info) {
-  constexpr double kRows = 1000.0;
-  constexpr double kShare = 0.02;  // of the rows that have one text in a column
-  std::array<int, kMaxIndexColumns> constraint_on{};
-  constraint_on.fill(-1);
-  for (int i = 0; i < info->nConstraint; ++i) {
-    const auto& constraint = info->aConstraint[i];
-    if (constraint.usable == 0 || constraint.op != SQLITE_INDEX_CONSTRAINT_EQ ||
-        constraint.iColumn < 0 || constraint.iColumn >= kMaxIndexColumns) {
-      continue;
-    }
-    // A value that compares equal in another type or collation has another place in the index.
-    if (std::strcmp(sqlite3_vtab_collation(info, i), "BINARY") != 0) continue;
-    constraint_on[static_cast<std::size_t>(constraint.iColumn)] = i;
-  }
-  double rows = kRows;
-  int values = 0;
-  unsigned columns = 0;
-  for (std::size_t column = 0; column < constraint_on.size(); ++column) {
-    if (constraint_on[column] < 0) continue;
-    info->aConstraintUsage[constraint_on[column]].argvIndex = ++values;
-    columns |= 1U << column;
-    rows *= kShare;
-  }
-  info->idxNum = static_cast<int>(columns);
-  info->estimatedCost = rows + 1.0;
-  info->estimatedRows = static_cast<sqlite3_int64>(rows + 1.0);
-  return SQLITE_OK;
-}
-
-int open_cursor(sqlite3_vtab*, sqlite3_vtab_cursor** cursor) {
-  *cursor = std::make_unique<Cursor>().release();
-  return SQLITE_OK;
-}
-
-int close_cursor(sqlite3_vtab_cursor* cursor) {
-  const std::unique_ptr<Cursor> owned(static_cast<Cursor*>(cursor));
-  return SQLITE_OK;
-}
-
-/// The columns whose value is a text, and what to look up: 1 and 1.0 are equal to SQLite, so that
-/// numbers are left to it.
-std::pair<unsigned, std::string> key_of(unsigned columns, sqlite3_value** values) {
-  std::pair<unsigned, std::string> key;
-  for (unsigned column = 0; columns >> column != 0; ++column) {
-    if ((columns >> column & 1U) == 0) continue;
-    sqlite3_value* const value = *values++;
-    if (sqlite3_value_type(value) != SQLITE_TEXT) continue;
-    key.first |= 1U << column;
-    const auto* text = reinterpret_cast<const char*>(sqlite3_value_text(value));
-    FactModule::add_to_key(key.second,
-                           {text, static_cast<std::size_t>(sqlite3_value_bytes(value))});
-  }
-  return key;
-}
-
-int filter(sqlite3_vtab_cursor* base, int columns, const char*, int, sqlite3_value** values) {
-  static const std::vector<std::size_t> kNone;
-  auto* const cursor = static_cast<Cursor*>(base);
-  FactModule& facts = module_of(base);
-  try {
-    cursor->rows = &(*facts.rows)(facts.table);
-    cursor->next = 0;
-    cursor->found = nullptr;
-    const auto [text_columns, key] = key_of(static_cast<unsigned>(columns), values);
-    if (text_columns != 0) {
-      const auto& index = facts.index(text_columns);
-      const auto entry = index.find(key);
-      cursor->found = entry == index.end() ? &kNone : &entry->second;
-    }
-    return SQLITE_OK;
-  } catch (...) {
-    // No exception may pass through SQLite; it goes on where the query was started.
-    *facts.thrown = std::current_exception();
-    return SQLITE_ABORT;
-  }
-}
-
-int advance(sqlite3_vtab_cursor* base) {
-  ++static_cast<Cursor*>(base)->next;
-  return SQLITE_OK;
-}
-
-int at_end(sqlite3_vtab_cursor* base) {
-  const auto* const cursor = static_cast<Cursor*>(base);
-  return cursor->next >= cursor->size() ? 1 : 0;
-}
-
-int column(sqlite3_vtab_cursor* base, sqlite3_context* context, int number) {
-  const auto* const cursor = static_cast<Cursor*>(base);
-  const FactValue& value = (*cursor->rows)[cursor->row()][static_cast<std::size_t>(number)];
-  if (const auto* const integer = std::get_if<std::int64_t>(&value)) {
-    sqlite3_result_int64(context, *integer);
-  } else if (const auto* const real = std::get_if<double>(&value)) {
-    sqlite3_result_double(context, *real);
-  } else if (const auto* const text = std::get_if<std::string>(&value)) {
-    // The rows stay while a query runs.
-    sqlite3_result_text(context, text->data(), static_cast<int>(text->size()), SQLITE_STATIC);
-  } else {
-    sqlite3_result_null(context);
-  }
-  return SQLITE_OK;
-}
-
-int row_id(sqlite3_vtab_cursor* base, sqlite3_int64* id) {
-  *id = static_cast<sqlite3_int64>(static_cast<Cursor*>(base)->row());
-  return SQLITE_OK;
-}
-
-/// Without xCreate: the tables are there, by their names, in every database.
-sqlite3_module fact_module() {
-  sqlite3_module module{};
-  module.xConnect = connect;
-  module.xDisconnect = disconnect;
-  module.xBestIndex = best_index;
-  module.xOpen = open_cursor;
-  module.xClose = close_cursor;
-  module.xFilter = filter;
-  module.xNext = advance;
-  module.xEof = at_end;
-  module.xColumn = column;
-  module.xRowid = row_id;
-  return module;
-}
-
-const sqlite3_module kFactModule = fact_module();
 
 bool is_refused(std::string_view function) {
   return std::ranges::find(kRefusedFunctions, function) != kRefusedFunctions.end();
@@ -285,7 +69,8 @@ struct FactDatabase::Impl {
   sqlite3* database = nullptr;
   FactReads* reads = nullptr;  ///< of the query that is being prepared
   std::set<std::size_t>* calls = nullptr;
-  std::string refused;  ///< what the authorizer did not let pass
+  std::vector<FactLookup>* lookups = nullptr;  ///< of the query that is run on a focus
+  std::string refused;                         ///< what the authorizer did not let pass
   int looks = 0;
 
   int authorize(int action, const char* first, const char* second);
@@ -371,13 +156,12 @@ FactDatabase::FactDatabase(RowsOf rows, Call call) : impl_(std::make_unique<Impl
     throw std::bad_alloc();
   }
   for (std::size_t i = 0; i < fact_tables().size(); ++i) {
-    DOWEL_EXPECTS(fact_tables()[i].columns.size() <= kMaxIndexColumns);
     auto& module = impl_->modules.emplace_back(std::make_unique<FactModule>());
     module->rows = &impl_->rows;
     module->table = i;
     module->thrown = &impl_->thrown;
-    sqlite3_create_module_v2(impl_->database, fact_tables()[i].name, &kFactModule, module.get(),
-                             nullptr);
+    module->lookups = &impl_->lookups;
+    add_module(impl_->database, *module);
   }
   impl_->add_functions();
   // A table is made when it is first named, which takes more than the authorizer lets a rule do.
@@ -442,17 +226,26 @@ std::unique_ptr<FactDatabase::Query> FactDatabase::prepare(const std::string& sq
   return query;
 }
 
+std::vector<std::string> FactDatabase::columns(const Query& query) const {
+  std::vector<std::string> names;
+  const int count = sqlite3_column_count(query.impl_->statement);
+  for (int i = 0; i < count; ++i) {
+    names.emplace_back(sqlite3_column_name(query.impl_->statement, i));
+  }
+  return names;
+}
+
 FactAnswer FactDatabase::run(Query& query) {
   sqlite3_stmt* const statement = query.impl_->statement;
   FactAnswer answer;
-  const int columns = sqlite3_column_count(statement);
-  for (int i = 0; i < columns; ++i) answer.columns.emplace_back(sqlite3_column_name(statement, i));
+  answer.columns = columns(query);
+  const int width = static_cast<int>(answer.columns.size());
   impl_->looks = 0;
   impl_->thrown = nullptr;
   int code = SQLITE_ROW;
   while ((code = sqlite3_step(statement)) == SQLITE_ROW && answer.rows.size() < kMaxRows) {
     FactRow& row = answer.rows.emplace_back();
-    for (int i = 0; i < columns; ++i) row.push_back(value_in(statement, i));
+    for (int i = 0; i < width; ++i) row.push_back(value_in(statement, i));
   }
   const std::string message = code == SQLITE_ROW ? "more than 200000 rows"
                               : code == SQLITE_INTERRUPT
@@ -462,6 +255,32 @@ FactAnswer FactDatabase::run(Query& query) {
   if (impl_->thrown != nullptr) std::rethrow_exception(std::exchange(impl_->thrown, nullptr));
   if (code != SQLITE_DONE) throw FactQueryError{message, 0, false};
   return answer;
+}
+
+FactAnswer FactDatabase::run_on(Query& query, const FactColumns& columns, const std::string& text,
+                                std::vector<FactLookup>& lookups) {
+  std::string key;
+  add_to_key(key, text);
+  for (const auto& [table, column] : columns) {
+    impl_->modules.at(table)->focus = FactLookup{table, 1U << column, key};
+  }
+  impl_->lookups = &lookups;
+  const auto release = [&] {
+    for (const auto& [table, column] : columns) impl_->modules.at(table)->focus.reset();
+    impl_->lookups = nullptr;
+  };
+  try {
+    FactAnswer answer = run(query);
+    release();
+    return answer;
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+bool FactDatabase::has(const FactLookup& lookup) {
+  return impl_->modules.at(lookup.table)->index(lookup.columns).contains(lookup.key);
 }
 
 void FactDatabase::forget(std::size_t table, const std::set<std::size_t>& columns) {

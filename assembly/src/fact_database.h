@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fact_function.h"
+#include "fact_lookup.h"
 #include "fact_table.h"
 
 namespace dowel {
@@ -32,6 +33,9 @@ struct FactQueryError {
 
 /// Columns by table, both as in `fact_tables()`. A table without columns has its rows counted.
 using FactReads = std::map<std::size_t, std::set<std::size_t>>;
+
+/// Columns, one a table.
+using FactColumns = std::map<std::size_t, std::size_t>;
 
 /// An in-memory database in which each fact table is a virtual table, filled by `rows` when a query
 /// first reads it. Queries may read the tables, call the functions of `fact_functions()` and those
@@ -72,6 +76,14 @@ class FactDatabase {
   std::unique_ptr<Query> prepare(const std::string& sql);
   /// Throws FactQueryError, and what the making of facts throws.
   FactAnswer run(Query& query);
+  /// The same where of each table of `columns` only those rows are seen that hold the text in its
+  /// column. Adds to `lookups` what the answer hangs on: it stays while their rows do.
+  FactAnswer run_on(Query& query, const FactColumns& columns, const std::string& text,
+                    std::vector<FactLookup>& lookups);
+  /// Names of the columns of its answer.
+  std::vector<std::string> columns(const Query& query) const;
+  /// Whether there is such a row.
+  bool has(const FactLookup& lookup);
   /// These columns of a table are not what they were.
   void forget(std::size_t table, const std::set<std::size_t>& columns);
 

@@ -68,6 +68,10 @@ class FactSource {
   const FoolproofAnalysis& foolproof(const FixtureModel& model);
   /// Of all screws and nuts that have a hexagon, by name.
   const std::vector<WrenchAccess>& wrenches();
+  /// What a wrench gets hold of.
+  const std::optional<Drive>& drive(const std::string& element) {
+    return wrench_bench_.drive(element, *this);
+  }
   /// Parts but the workpiece that a cutter is in, which comes down to a critical point.
   std::vector<std::string> in_way_of_cutter(const CriticalPoint& point, double diameter_mm,
                                             double length_mm);

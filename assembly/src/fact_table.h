@@ -51,6 +51,8 @@ std::vector<FactTable> design_facts();
 std::vector<FactTable> stated_facts();
 std::vector<FactTable> slot_facts();
 std::vector<FactTable> access_facts();
+std::vector<FactTable> washer_facts();
+std::vector<FactTable> order_facts();
 
 /// Truth as SQL has it.
 inline FactValue truth(bool value) {

@@ -16,6 +16,8 @@ constexpr double kMuch = 1.0e6;
 
 // "Usual" values are those of machining practice; a project states its own by `limit`.
 constexpr std::array kLimits{
+    Limit{"assembly_order", 0.0, 0.0, 1.0,
+          "1: look for an order of assembly, which takes sweeps of all parts; 0: do not"},
     Limit{"clamp_clearance_mm", 5.0, 0.0, kMuch,
           "least distance of clamps and locators from a critical point, where a tool works"},
     Limit{"chip_relief_mm", 1.0, 0.0, kMuch, "least free space around the root of a locator"},
@@ -36,6 +38,7 @@ constexpr std::array kLimits{
     Limit{"gap_workpiece_mm", 2.0, 0.0, 10.0,
           "least gap of the workpiece and what is not to touch"},
     Limit{"grid_mm", 0.02, 0.0, kMuch, "largest distance of a part's hole from the plate's"},
+    Limit{"hand_mm", 60.0, 0.0, 1000.0, "room that a hand needs beside a clamp"},
     Limit{"head_bearing_in_diameters", 0.1, 0.0, 10.0,
           "least width of the ring on which a head or nut bears, in diameters of the thread"},
     Limit{"height_mm", 1000.0, 0.0, kMuch, "largest height of the fixture with its workpiece"},
@@ -59,6 +62,8 @@ constexpr std::array kLimits{
           "yield strength of screws: property class 8.8"},
     Limit{"seating_N", 0.0, -kMuch, kMuch, "least force on a locator when the clamps are tight"},
     Limit{"slenderness", 3.0, 0.1, 100.0, "largest height of a stack by its least width"},
+    Limit{"slot_line_mm", 0.5, 0.0, kMuch,
+          "how far a bore over a slot may be off the middle of the slot"},
     Limit{"slot_play_mm", 0.1, 0.0, kMuch, "least play of a T-nut's neck in its slot"},
     Limit{"stack_pieces", 3.0, 1.0, 100.0, "largest number of spacers on each other"},
     Limit{"stack_tolerance_mm", 0.05, 0.0, kMuch,
@@ -88,11 +93,14 @@ constexpr std::array kStatedQuantities{
     StatedQuantity{"land_mm", 0.01, kMuch, "a diamond pin", "width of its cylindrical land"},
     StatedQuantity{"machined", 0.0, 1.0, "a face of the workpiece",
                    "1: a datum or machined; 0: rough"},
+    StatedQuantity{"manual", 0.0, 1.0, "a clamp", "1: a hand works it; 0: a wrench or fluid does"},
     StatedQuantity{"pad_mm2", 0.01, kMuch, "a clamp or locator",
                    "area of its pad, where that is less than a face of it"},
     StatedQuantity{"preload_N", 0.0, kMuch, "a screw", "force that it is tightened to"},
     StatedQuantity{"stock", 0.0, kMuch, "an element", "how many of it there are in the shop"},
     StatedQuantity{"stroke_mm", 0.0, kMuch, "a clamp", "way that it opens"},
+    StatedQuantity{"thread_length_mm", 0.01, kMuch, "a screw",
+                   "length of its thread from the tip, where it does not reach the head"},
 };
 
 }  // namespace

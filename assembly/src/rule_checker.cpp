@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -10,86 +9,12 @@
 #include "dowel/kernel/error.h"
 #include "fact_database.h"
 #include "fact_source.h"
+#include "kept_facts.h"
+#include "rule_findings.h"
+#include "rule_parts.h"
 
 namespace dowel {
 namespace {
-
-/// Numbers as people read them: six digits.
-std::string text_of(const FactValue& value) {
-  if (const auto* const integer = std::get_if<std::int64_t>(&value)) {
-    return std::to_string(*integer);
-  }
-  if (const auto* const real = std::get_if<double>(&value)) {
-    std::array<char, 32> buffer{};
-    constexpr int kDigits = 6;
-    const double shown = *real == 0.0 ? 0.0 : *real;  // no -0
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), shown,
-                                   std::chars_format::general, kDigits)
-                         .ptr;
-    return {buffer.data(), end};
-  }
-  if (const auto* const text = std::get_if<std::string>(&value)) return *text;
-  return "unknown";
-}
-
-/// Throws FactQueryError for a column that is not there.
-std::size_t column_called(const FactAnswer& answer, const std::string& name) {
-  const auto found = std::ranges::find(answer.columns, name);
-  if (found == answer.columns.end()) {
-    throw FactQueryError{"its query has no column \"" + name + "\"", 0, false};
-  }
-  return static_cast<std::size_t>(found - answer.columns.begin());
-}
-
-std::string filled(const std::string& message, const FactAnswer& answer, const FactRow& row) {
-  std::string text;
-  for (std::size_t i = 0; i < message.size(); ++i) {
-    if (message[i] != '{') {
-      text += message[i];
-      continue;
-    }
-    const std::size_t end = message.find('}', i);
-    text += text_of(row[column_called(answer, message.substr(i + 1, end - i - 1))]);
-    i = end;
-  }
-  return text;
-}
-
-RuleState state_of(const FactValue& ok) {
-  if (std::holds_alternative<std::monostate>(ok)) return RuleState::NotEvaluated;
-  const auto* const truth = std::get_if<std::int64_t>(&ok);
-  if (truth == nullptr || (*truth != 0 && *truth != 1)) {
-    throw FactQueryError{"its column \"ok\" is to be 1, 0 or NULL, not " + text_of(ok), 0, false};
-  }
-  return *truth == 1 ? RuleState::Pass : RuleState::Fail;
-}
-
-std::vector<RuleFinding> findings_of(const Rule& rule, const FactAnswer& answer) {
-  const std::size_t subject = column_called(answer, "subject");
-  const std::size_t ok = column_called(answer, "ok");
-  const auto reason = std::ranges::find(answer.columns, "reason");
-  // An unknown place in the message is an error even where nothing is found.
-  filled(rule.message, answer, FactRow(answer.columns.size()));
-  std::vector<RuleFinding> findings;
-  for (const FactRow& row : answer.rows) {
-    RuleFinding finding;
-    finding.state = state_of(row[ok]);
-    finding.subject = text_of(row[subject]);
-    if (finding.state == RuleState::Fail) finding.message = filled(rule.message, answer, row);
-    if (finding.state == RuleState::NotEvaluated) {
-      finding.message = "a value it needs is not known";
-      if (reason != answer.columns.end()) {
-        finding.message = text_of(row[static_cast<std::size_t>(reason - answer.columns.begin())]);
-      }
-    }
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i == subject || i == ok || answer.columns[i] == "reason") continue;
-      finding.values.emplace_back(answer.columns[i], text_of(row[i]));
-    }
-    findings.push_back(std::move(finding));
-  }
-  return findings;
-}
 
 std::size_t line_at(const std::string& text, std::size_t offset) {
   return 1 + static_cast<std::size_t>(std::count(
@@ -100,130 +25,151 @@ std::size_t line_at(const std::string& text, std::size_t offset) {
 }  // namespace
 
 struct RuleChecker::Impl {
-  struct Facts {
-    FactRows rows;
-    bool is_stale = true;
-    std::uint64_t changes = 0;            ///< times that it was made and had changed
-    std::vector<std::uint64_t> versions;  ///< by column: the last of these that changed it
-    std::uint64_t count_version = 0;      ///< the last that changed the number of rows
-  };
   struct Prepared {
     std::unique_ptr<FactDatabase::Query> query;
+    FactReads reads;
+    FactColumns each;                               ///< none: evaluated whole
     std::map<std::size_t, std::uint64_t> versions;  ///< of the facts that the last run read
     std::map<std::size_t, std::uint64_t> calls;     ///< versions of the functions that it calls
     bool has_run = false;
+    bool has_parts = false;  ///< `parts` are those of `versions`
+    RuleParts parts;
     RuleResult result;
   };
 
   Impl(Session& session, const RuleSet& given)
       : source(session),
         rules(given),
-        facts(fact_tables().size()),
+        facts(source,
+              [this](std::size_t table, const std::set<std::size_t>& columns) {
+                database.forget(table, columns);
+              }),
         function_versions(fact_functions().size()),
-        database([this](std::size_t table) -> const FactRows& { return rows(table); },
+        database([this](std::size_t table) -> const FactRows& { return facts.rows(table); },
                  [this](std::size_t function, std::span<const FactValue> arguments) {
                    return fact_functions()[function].call(source, arguments);
                  }),
         prepared(given.rules.size()) {}
 
-  /// Rows of a table, made or made anew where they may have changed.
-  const FactRows& rows(std::size_t table) {
-    Facts& known = facts[table];
-    if (known.is_stale) {
-      FactRows now = fact_tables()[table].rows(source);
-      known.is_stale = false;
-      take(table, std::move(now));
-    }
-    return known.rows;
-  }
-
-  /// Keeps what indices of the database and rules know of columns that are as they were.
-  void take(std::size_t table, FactRows now) {
-    Facts& known = facts[table];
-    const std::size_t columns = fact_tables()[table].columns.size();
-    DOWEL_EXPECTS(
-        std::ranges::all_of(now, [&](const FactRow& row) { return row.size() == columns; }));
-    const bool is_first = known.versions.empty();
-    const bool is_resized = now.size() != known.rows.size();
-    std::set<std::size_t> changed;
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (is_first || is_resized ||
-          !std::ranges::equal(now, known.rows, [&](const auto& a, const auto& b) {
-            return a[column] == b[column];
-          })) {
-        changed.insert(column);
-      }
-    }
-    if (changed.empty()) return;
-    ++known.changes;
-    known.versions.resize(columns);
-    for (const std::size_t column : changed) known.versions[column] = known.changes;
-    if (is_first || is_resized) known.count_version = known.changes;
-    known.rows = std::move(now);
-    database.forget(table, changed);
-  }
-
-  /// Of the columns, and of how many rows there are.
-  std::uint64_t version(std::size_t table, const std::set<std::size_t>& columns) {
-    rows(table);
-    std::uint64_t last = facts[table].count_version;
-    for (const std::size_t column : columns) last = std::max(last, facts[table].versions[column]);
-    return last;
+  bool calls_changed(const Prepared& rule) const {
+    return std::ranges::any_of(
+        rule.calls, [&](const auto& call) { return function_versions[call.first] != call.second; });
   }
 
   bool must_run(Prepared& rule) {
     if (!rule.has_run) return true;
     if (rule.query == nullptr) return false;  // broken for good
-    if (std::ranges::any_of(rule.calls, [&](const auto& call) {
-          return function_versions[call.first] != call.second;
-        })) {
-      return true;
-    }
+    if (calls_changed(rule)) return true;
     try {
-      return std::ranges::any_of(rule.query->reads(), [&](const auto& read) {
-        return version(read.first, read.second) != rule.versions.at(read.first);
+      return std::ranges::any_of(rule.reads, [&](const auto& read) {
+        return facts.version(read.first, read.second) != rule.versions.at(read.first);
       });
     } catch (const Error&) {
       return true;  // running it tells
     }
   }
 
+  void prepare(const Rule& rule, Prepared& prepared_rule);
+  std::set<std::string> texts_to_run(const Prepared& rule);
+  void run_parts(const Rule& rule, Prepared& prepared_rule);
   void run(const Rule& rule, Prepared& prepared_rule);
   void judge(RuleResult& result, RuleReport& report);
 
   FactSource source;
   const RuleSet& rules;
-  std::vector<Facts> facts;
+  KeptFacts facts;
   std::vector<std::uint64_t> function_versions;  ///< times that what they reckon with changed
   FactDatabase database;
   std::vector<Prepared> prepared;
   std::size_t ran = 0;
+  std::size_t queries = 0;
 };
+
+void RuleChecker::Impl::prepare(const Rule& rule, Prepared& prepared_rule) {
+  auto query = database.prepare(rule.sql);
+  prepared_rule.reads = query->reads();
+  prepared_rule.each = each_columns(rule, prepared_rule.reads);
+  for (const auto& [table, column] : prepared_rule.each) prepared_rule.reads[table].insert(column);
+  // Its form is wrong even where it is evaluated for no text.
+  findings_of(rule, {database.columns(*query), {}});
+  prepared_rule.query = std::move(query);
+}
+
+/// Those whose answer may be another than in its parts.
+std::set<std::string> RuleChecker::Impl::texts_to_run(const Prepared& rule) {
+  std::set<std::string> texts;
+  const auto add_text = [&](const FactRow& row, std::size_t column) {
+    if (row.empty()) return;
+    if (const auto* const text = std::get_if<std::string>(&row[column])) texts.insert(*text);
+  };
+  if (!rule.has_parts) {
+    texts = rule.parts.texts();
+    for (const auto& [table, column] : rule.each) {
+      for (const FactRow& row : facts.rows(table)) add_text(row, column);
+    }
+    return texts;
+  }
+  for (const auto& [table, columns] : rule.reads) {
+    rule.parts.add_touched(table, columns, facts.changes(table), texts);
+  }
+  for (const auto& [table, column] : rule.each) {
+    for (const RowChange& change : facts.changes(table)) add_text(change.after, column);
+  }
+  return texts;
+}
+
+void RuleChecker::Impl::run_parts(const Rule& rule, Prepared& prepared_rule) {
+  const std::set<std::string> texts = texts_to_run(prepared_rule);
+  prepared_rule.has_parts = false;  // until all went well
+  for (const std::string& text : texts) {
+    std::string key;
+    add_to_key(key, text);
+    if (std::ranges::none_of(prepared_rule.each, [&](const auto& column) {
+          return database.has({column.first, 1U << column.second, key});
+        })) {
+      prepared_rule.parts.drop(text);
+      continue;
+    }
+    ++queries;
+    RulePart part;
+    part.findings = findings_of(
+        rule, database.run_on(*prepared_rule.query, prepared_rule.each, text, part.lookups));
+    prepared_rule.parts.put(text, std::move(part));
+  }
+  prepared_rule.has_parts = true;
+  prepared_rule.result.findings = prepared_rule.parts.findings();
+}
 
 /// Whatever goes wrong in a rule is that rule's own.
 void RuleChecker::Impl::run(const Rule& rule, Prepared& prepared_rule) {
   ++ran;
-  prepared_rule.has_run = true;
   RuleResult& result = prepared_rule.result;
-  prepared_rule.versions.clear();
-  prepared_rule.calls.clear();
   result = {};
   result.rule = rule;
+  prepared_rule.has_run = true;
+  if (calls_changed(prepared_rule)) prepared_rule.has_parts = false;
   try {
-    if (prepared_rule.query == nullptr) prepared_rule.query = database.prepare(rule.sql);
-    for (const auto& [table, columns] : prepared_rule.query->reads()) {
+    if (prepared_rule.query == nullptr) prepare(rule, prepared_rule);
+    for (const auto& [table, columns] : prepared_rule.reads) {
       result.facts.emplace_back(fact_tables()[table].name);
-      prepared_rule.versions[table] = version(table, columns);
+      prepared_rule.versions[table] = facts.version(table, columns);
     }
     for (const std::size_t function : prepared_rule.query->calls()) {
       result.facts.emplace_back(std::string(fact_functions()[function].name) + "()");
       prepared_rule.calls[function] = function_versions[function];
     }
-    result.findings = findings_of(rule, database.run(*prepared_rule.query));
+    if (prepared_rule.each.empty()) {
+      ++queries;
+      result.findings = findings_of(rule, database.run(*prepared_rule.query));
+    } else {
+      run_parts(rule, prepared_rule);
+    }
   } catch (const FactQueryError& error) {
+    prepared_rule.has_parts = false;
     result.broken = BrokenRule{
         rule.id, rule.file, error.has_offset ? line_at(rule.sql, error.offset) : 1, error.message};
   } catch (const Error& error) {
+    prepared_rule.has_parts = false;
     result.broken =
         BrokenRule{rule.id, rule.file, 1, std::string("facts it reads: ") + error.what()};
     prepared_rule.has_run = false;  // the next edit may mend them
@@ -260,16 +206,19 @@ std::size_t RuleChecker::last_run() const {
   return impl_->ran;
 }
 
+std::size_t RuleChecker::last_queries() const {
+  return impl_->queries;
+}
+
 RuleReport RuleChecker::check() {
   Impl& self = *impl_;
   const unsigned changed = self.source.update();
-  for (std::size_t i = 0; i < self.facts.size(); ++i) {
-    if ((fact_tables()[i].inputs & changed) != 0) self.facts[i].is_stale = true;
-  }
+  self.facts.expire(changed);
   for (std::size_t i = 0; i < self.function_versions.size(); ++i) {
     if ((fact_functions()[i].inputs & changed) != 0) ++self.function_versions[i];
   }
   self.ran = 0;
+  self.queries = 0;
   RuleReport report;
   report.broken = self.rules.broken;
   const FixtureDesign& design = self.source.state().design;

@@ -92,12 +92,13 @@ std::variant<Rule, BrokenRule> read_rule(const std::string& text, const std::str
   rule.family = family;
   rule.sql = text;
   std::string severity;
-  const std::array<std::pair<std::string_view, std::string*>, 5> fields{
+  const std::array<std::pair<std::string_view, std::string*>, 6> fields{
       {{"id", &rule.id},
        {"severity", &severity},
        {"title", &rule.title},
        {"message", &rule.message},
-       {"reference", &rule.reference}}};
+       {"reference", &rule.reference},
+       {"each", &rule.each}}};
   std::istringstream lines(text);
   std::string line;
   std::size_t number = 0;
@@ -124,7 +125,7 @@ std::variant<Rule, BrokenRule> read_rule(const std::string& text, const std::str
     }
   }
   for (const auto& [name, value] : fields) {
-    if (value->empty()) {
+    if (value->empty() && value != &rule.each) {
       return broken(1, "expected a line \"-- " + std::string(name) + ": ...\" in its header");
     }
   }

@@ -1,5 +1,9 @@
 // Facts about what stands in slots.
 
+#include <algorithm>
+#include <cmath>
+
+#include "dowel/kernel/tolerance.h"
 #include "fact_source.h"
 
 namespace dowel {
@@ -41,10 +45,67 @@ FactRows slot_fits(FactSource& source) {
   return rows;
 }
 
+bool is_upright(const Eigen::Vector3d& axis_W) {
+  return std::abs(axis_W.z()) > 1.0 - kCoaxial_rad;
+}
+
+/// A row for each upright through hole of a part, with the upright slot of the plate whose middle
+/// is nearest.
+void add_plate_slots(FactSource& source, const Instance& part, const Instance& plate,
+                     FactRows& rows) {
+  const Role role = source.role(part);
+  if (role != Role::Riser && role != Role::Locator && role != Role::Support) return;
+  for (const Feature& bore : source.element(part).features) {
+    if (bore.kind != FeatureKind::Hole || !bore.through ||
+        !is_upright(part.X_WI.rotation() * bore.direction)) {
+      continue;
+    }
+    const Eigen::Vector3d at = plate.X_WI.inverse() * (part.X_WI * bore.origin);
+    const Feature* nearest = nullptr;
+    double off_mm = 0.0;
+    for (const Feature& slot : source.element(plate).features) {
+      if (slot.kind != FeatureKind::Slot || !slot.slot ||
+          !is_upright(plate.X_WI.rotation() * slot.direction)) {
+        continue;
+      }
+      const Eigen::Vector3d across = slot.direction.cross(slot.slot->run);
+      const double to_slot_mm = std::abs(across.dot(at - slot.origin));
+      if (nearest != nullptr && to_slot_mm >= off_mm) continue;
+      nearest = &slot;
+      off_mm = to_slot_mm;
+    }
+    if (nearest == nullptr) continue;
+    rows.push_back({part.name, bore.name, plate.name, nearest->name, off_mm});
+  }
+}
+
+FactRows plate_slots(FactSource& source) {
+  FactRows rows;
+  for (const Touch& touch : source.touches()) {
+    if (touch.pair.verdict != Verdict::Contact) continue;
+    const Instance& a = *source.state().find(touch.instance);
+    const Instance& b = *source.state().find(touch.with);
+    if (source.role(a) == Role::BasePlate) add_plate_slots(source, b, a, rows);
+    if (source.role(b) == Role::BasePlate) add_plate_slots(source, a, b, rows);
+  }
+  std::ranges::sort(rows);
+  return rows;
+}
+
 }  // namespace
 
 std::vector<FactTable> slot_facts() {
-  return {{"slot_fits",
+  return {{"plate_slots",
+           "Upright through holes of risers, locators and supports that stand on a base plate with "
+           "slots.",
+           {{"instance", "part"},
+            {"hole", "its feature"},
+            {"plate", "instance"},
+            {"slot", "its slot whose middle is nearest"},
+            {"off_mm", "from the hole's axis to that, seen from above"}},
+           kFromParts | kFromDesign | kFromTolerance,
+           plate_slots},
+          {"slot_fits",
            "Parts with flat sides that stand in plain slots or T-slots: T-nuts, T-bolts, keys.",
            {{"instance", "what stands in the slot"},
             {"slot_instance", "whose slot"},

@@ -12,18 +12,20 @@
 
 #include "dowel/assembly/fixture_analysis.h"
 #include "dowel/collision/scene.h"
-#include "drive.h"
+#include "tool_room.h"
 
 namespace dowel {
 
 class FactSource;
 
-/// Wrenches and cutters as cylinders, held against the parts near by. An answer is kept while the
-/// fastener and all that is in its wrench's reach stay where they are.
+/// Wrenches and cutters as cylinders, held against the parts near by, one by one. What a part is in
+/// the way of is kept while it and the fastener stay where they are.
 class WrenchBench {
  public:
   /// Of all instances with a drive, by name.
   std::vector<WrenchAccess> access(FactSource& source);
+
+  const std::optional<Drive>& drive(const std::string& element, FactSource& source);
 
   /// Names of parts, but workpieces, that are in a cylinder of `diameter_mm` upwards from the
   /// point.
@@ -31,26 +33,38 @@ class WrenchBench {
                                             double diameter_mm, double length_mm);
 
  private:
-  struct Question {
-    Instance fastener;
-    bool before_workpiece = false;
-    std::vector<Instance> near;  ///< in reach, and there when it is tightened
-    /// Of these, what is put together with it in no certain order: parts of clamps.
-    std::set<std::string> put_together;
-    double tolerance_mm = 0.0;
-
-    bool operator==(const Question&) const = default;
+  struct Placed {
+    const Instance* instance = nullptr;
+    Eigen::AlignedBox3d box_W;
+    std::shared_ptr<const CollisionElement> model;
+  };
+  /// Of which rooms around a fastener a part is in the way.
+  struct InWay {
+    Instance part;
+    std::vector<bool> of_head;                ///< by wrench
+    std::vector<std::vector<bool>> of_lever;  ///< by wrench and angle; empty where of none
+    bool of_way_in = false;
   };
   struct Known {
-    Question question;
-    WrenchAccess access;
+    Instance fastener;
+    FastenerRooms rooms;
+    std::map<std::string, InWay> in_way;  ///< by part
   };
 
-  WrenchAccess answer(const Question& question, const Drive& drive, FactSource& source);
+  void use_tolerance(double tolerance_mm);
+  /// Whether a part is in a cylinder by more than the tolerance.
+  bool is_in(const ToolRoom& room, const Placed& part);
+  const InWay& in_way(Known& known, const Placed& part);
+  Known& known(const Instance& fastener, const Drive& drive);
+  /// Parts of `put_together` do not stop a screw that comes in.
+  WrenchAccess answer(Known& known, const std::vector<Placed>& near,
+                      const std::set<std::string>& put_together);
+  static std::vector<Placed> placed(FactSource& source);
   const std::shared_ptr<const CollisionElement>& cylinder(double diameter_mm, double length_mm);
 
   std::map<std::string, std::optional<Drive>> drives_;  ///< by element
   std::map<std::string, Known> known_;                  ///< by fastener
+  double tolerance_mm_ = 0.0;                           ///< that these are of
   std::map<std::pair<double, double>, std::shared_ptr<const CollisionElement>> cylinders_;
 };
 

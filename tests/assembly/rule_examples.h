@@ -21,6 +21,7 @@ using Seen = std::map<std::string, std::pair<bool, bool>>;
 void stated_examples(Seen& seen);
 void slot_examples(Seen& seen);
 void tool_examples(Seen& seen);
+void catalogue_part_examples(Seen& seen);
 
 /// What a shipped rule says of a project, and notes it.
 inline RuleResult result_of(const FixtureBuilder& builder, const std::string& id, Seen& seen) {

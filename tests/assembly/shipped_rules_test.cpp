@@ -400,7 +400,7 @@ void screwed_examples(Seen& seen) {
                  add_pin(b, "T/pin-a", "", {40, -40, 30}, "A4", "");
                  mate_pin(b, "T/pin-a", "A4", 20.0);
                }});
-  try_screwed({"a part that slides", {"FST-01", "FST-02"}, [](FixtureBuilder& b) {
+  try_screwed({"a part that slides", {"FST-01", "FST-02", "SYS-01"}, [](FixtureBuilder& b) {
                  b.place("T/riser-60x60x40", "LOOSE", {50, 0, 40});
                  dowel::Mate mate;
                  mate.number = 9;
@@ -483,6 +483,7 @@ TEST_CASE("every shipped rule has an example that it passes and one that it fail
   testing::stated_examples(seen);
   testing::slot_examples(seen);
   testing::tool_examples(seen);
+  testing::catalogue_part_examples(seen);
   CHECK(seen.size() == dowel::shipped_rules().rules.size());
   for (const auto& [rule, states] : seen) {
     CAPTURE(rule);

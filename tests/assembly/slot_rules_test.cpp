@@ -108,6 +108,10 @@ void tee_examples(Seen& seen) {
   CHECK(state_of(slotted(35.0, 22.0), "FST-06", seen) == RuleState::Pass);
   CHECK(state_of(slotted(34.5, 22.0), "FST-06", seen) == RuleState::Fail);
   CHECK(state_of(slotted(47.0, 22.0), "FST-06", seen) == RuleState::Fail);
+  CHECK(state_of(slotted(35.0, 22.0), "SYS-01", seen) == RuleState::Pass);
+  FixtureBuilder beside = slotted(35.0, 22.0);
+  beside.state.instances.at("RISER").X_WI = Pose::from_translation({20, 5, 60});
+  CHECK(state_of(beside, "SYS-01", seen) == RuleState::Fail);
 
   // Plate, T-nut, screw, riser: each holds the next.
   const RuleResult held = result_of(slotted(35.0, 22.0), "FST-01", seen);

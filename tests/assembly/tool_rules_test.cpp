@@ -4,63 +4,14 @@
 #include <numbers>
 
 #include "dowel/assembly/fixture_analysis.h"
+#include "hexagon_screw.h"
 #include "random_geometry.h"
 #include "rule_examples.h"
 
 namespace dowel::testing {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-/// Both solids as lumps of one.
-FacetedSolid both(FacetedSolid a, const FacetedSolid& b) {
-  const auto vertices = static_cast<std::uint32_t>(a.vertices.size());
-  const auto faces = static_cast<std::uint32_t>(a.faces.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const Triangle& t : b.triangles) {
-    a.triangles.push_back({t[0] + vertices, t[1] + vertices, t[2] + vertices});
-  }
-  for (const std::uint32_t face : b.face_of) a.face_of.push_back(face + faces);
-  for (Face face : b.faces) {
-    face.solid += a.solid_count;
-    a.faces.push_back(face);
-  }
-  for (Edge edge : b.edges) {
-    for (std::uint32_t& face : edge.faces) face += faces;
-    a.edges.push_back(edge);
-  }
-  a.solid_count += b.solid_count;
-  return a;
-}
-
-FacetedSolid lifted(FacetedSolid solid, double by_mm) {
-  const Pose up = Pose::from_translation({0, 0, by_mm});
-  for (Vector3d& vertex : solid.vertices) vertex = up * vertex;
-  for (Face& face : solid.faces) face.surface = transformed(up, face.surface);
-  for (Edge& edge : solid.edges) {
-    edge.start = up * edge.start;
-    edge.end = up * edge.end;
-    edge.center = up * edge.center;
-  }
-  return solid;
-}
-
-/// M12 x 65 with a hexagon head of 18 across flats, 8 high, its tip at z = 0.
-ProjectElement hexagon_screw() {
-  std::vector<Vector2d> corners;
-  for (int i = 0; i < 6; ++i) {
-    const double angle_rad = std::numbers::pi / 3.0 * i;
-    corners.emplace_back(18.0 / std::sqrt(3.0) * std::cos(angle_rad),
-                         18.0 / std::sqrt(3.0) * std::sin(angle_rad));
-  }
-  ProjectElement screw = element_of(
-      "T/hex-screw-M12x65", both(cylinder(6.0, 64.99, 24), lifted(prism(corners, 8), 65)),
-      {shaft_feature("pin1", {0, 0, 65}, -Vector3d::UnitZ(), 12.0, 65.0)});
-  screw.element.role = "fastener";
-  screw.element.features[0].thread = "M12";
-  return screw;
-}
 
 /// A block on the plate's hole B2 at (-40, 0), and a hexagon screw through it: its head is from
 /// z = 80 to 88.

@@ -5,6 +5,7 @@
 --     {swing_deg} degrees, expected {least_deg}
 -- reference: keys like ISO 2936, sockets like ISO 2725-1, spanners like DIN 3110 (general knowledge);
 --     limit swing_deg
+-- each: wrenches.instance
 SELECT w.instance AS subject,
        w.free = 1 AND w.swing_deg >= l.value AS ok,
        w.wrench,

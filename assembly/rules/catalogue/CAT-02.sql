@@ -3,6 +3,7 @@
 -- title: The stored box encloses the element
 -- message: {subject}: {faults}
 -- reference: Peng et al. 2009, section 3.2: boxes that are too small hide collisions
+-- each: elements.element
 SELECT e.element AS subject,
        count(f.fault) = 0 AS ok,
        coalesce(group_concat(f.fault, '; '), 'sound') AS faults

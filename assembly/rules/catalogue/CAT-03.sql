@@ -3,6 +3,7 @@
 -- title: The mesh is closed and outward
 -- message: {subject}: {faults}
 -- reference: catalog/README.md, lint: containment needs it
+-- each: elements.element
 SELECT e.element AS subject,
        count(f.fault) = 0 AS ok,
        coalesce(group_concat(f.fault, '; '), 'sound') AS faults

@@ -3,6 +3,7 @@
 -- title: Facets tagged as holes belong to declared holes, and the other way round
 -- message: {subject}: {faults}
 -- reference: Peng et al. 2009, table 1
+-- each: elements.element
 SELECT e.element AS subject,
        count(f.fault) = 0 AS ok,
        coalesce(group_concat(f.fault, '; '), 'sound') AS faults

@@ -3,6 +3,7 @@
 -- title: The unit is stated and the size is that of a fixture element
 -- message: {subject}: {faults}
 -- reference: catalog/README.md, lint
+-- each: elements.element
 SELECT e.element AS subject,
        count(f.fault) = 0 AS ok,
        coalesce(group_concat(f.fault, '; '), 'sound') AS faults

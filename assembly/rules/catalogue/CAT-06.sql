@@ -3,6 +3,7 @@
 -- title: Licence and source are stated
 -- message: {subject}: {faults}
 -- reference: catalog/README.md, lint
+-- each: elements.element
 SELECT e.element AS subject,
        count(f.fault) = 0 AS ok,
        coalesce(group_concat(f.fault, '; '), 'sound') AS faults

@@ -3,6 +3,7 @@
 -- title: A clamp presses over the supports
 -- message: {subject} presses {outside_mm} mm outside of the polygon of the supports
 -- reference: Carr Lane, clamping: over a support
+-- each: clamps.instance
 SELECT instance || ' ' || workpiece AS subject,
        support_margin_mm >= 0 AS ok,
        -support_margin_mm AS outside_mm,

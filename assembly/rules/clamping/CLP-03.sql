@@ -3,6 +3,7 @@
 -- title: A clamp presses towards a locator
 -- message: {subject} presses within {off_deg} degrees of no locator, expected 30
 -- reference: clamp toward the locators: within 30 degrees
+-- each: clamps.instance
 SELECT instance || ' ' || workpiece AS subject,
        CASE WHEN toward IS NULL THEN NULL ELSE toward <= -0.866 END AS ok,
        'there is no locator' AS reason,

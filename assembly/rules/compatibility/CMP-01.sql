@@ -3,6 +3,7 @@
 -- title: Parts that are fastened to each other are of one family
 -- message: {subject}: {family} and {other_family} are systems of different pitch and thread
 -- reference: Rong and Bai, Fixture Design for Workpiece Positioning, chapter on modular systems
+-- each: fastenings.instance
 SELECT f.instance || ' ' || f.holder AS subject,
        CASE WHEN a.family = '' OR b.family = '' THEN NULL ELSE a.family = b.family END AS ok,
        'the family of one is not stated' AS reason,

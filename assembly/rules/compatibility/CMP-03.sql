@@ -3,6 +3,7 @@
 -- title: A shaft in a bore of a stated class locates or is pressed in
 -- message: {subject}: {hole_fit}/{shaft_fit} leaves {least_clearance_um} to {most_clearance_um} um
 -- reference: ISO 286-1; up to 50 um by limit locating_clearance_um
+-- each: fits.shaft_instance
 SELECT shaft_instance || '.' || shaft || ' ' || hole_instance || '.' || hole AS subject,
        (least_clearance_um >= 0 AND most_clearance_um <= l.value)
          OR least_clearance_um + most_clearance_um < 0 AS ok,

@@ -3,6 +3,7 @@
 -- title: A clearance hole is neither too tight nor too wide for its screw
 -- message: {subject}: {bore_mm} mm for {shaft_thread}, expected {fine_mm} to {coarse_mm} mm
 -- reference: ISO 273
+-- each: fits.shaft_instance
 WITH clearance(nominal_mm, fine_mm, coarse_mm) AS (
   VALUES (3, 3.2, 3.6), (4, 4.3, 4.8), (5, 5.3, 5.8), (6, 6.4, 7.0), (8, 8.4, 10.0),
          (10, 10.5, 12.0), (12, 13.0, 14.5), (16, 17.0, 18.5), (20, 21.0, 24.0), (24, 25.0, 28.0))

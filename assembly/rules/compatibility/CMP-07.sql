@@ -5,6 +5,7 @@
 --     in an undercut of {undercut_width_mm} x {undercut_height_mm} mm, out of the slot by {out_mm} mm
 -- reference: ISO 299 (slots) and DIN 508 (nuts): neck 0.1 mm and foot 0.5 mm narrower, foot not
 --     higher; limit slot_play_mm. A nut is not to look out; a T-bolt does
+-- each: slot_fits.instance
 SELECT s.instance || ' ' || s.slot_instance || '.' || s.slot AS subject,
        (s.play_mm IS NULL OR s.play_mm >= l.value)
          AND s.foot_width_mm <= s.undercut_width_mm - 0.5

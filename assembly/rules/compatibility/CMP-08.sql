@@ -3,6 +3,7 @@
 -- title: A key fits the slots that it stands in
 -- message: {subject}: {play_mm} mm of play, expected 0 to {most_mm} mm
 -- reference: DIN 6323: h6 in H8; as drawn, limit locating_clearance_um
+-- each: slot_fits.instance
 SELECT s.instance || ' ' || s.slot_instance || '.' || s.slot AS subject,
        s.play_mm BETWEEN -0.001 AND l.value / 1000.0 AS ok,
        s.play_mm,

@@ -4,6 +4,7 @@
 -- message: {subject}: {off_mm} mm off the nearest hole, expected {most_mm} mm at most
 -- reference: a part off the pattern cannot be screwed down; limit grid_mm. A bore that is off by more
 --     than half its diameter is for something else
+-- each: plate_holes.instance
 SELECT h.instance || ' ' || h.plate AS subject,
        max(h.off_mm) <= l.value AS ok,
        max(h.off_mm) AS off_mm,

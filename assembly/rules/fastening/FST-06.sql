@@ -5,6 +5,7 @@
 --     from its tip to the floor, expected {floor_mm} mm
 -- reference: DIN 508: the thread in use carries all; 0.9 of limit engagement_in_diameters, for the nut
 --     is heat-treated, or the whole nut; limit floor_gap_mm
+-- each: slot_fits.instance
 SELECT f.shaft_instance || ' ' || f.hole_instance AS subject,
        f.engagement_mm >= min(0.9 * e.value * f.shaft_mm, f.overlap_mm + max(f.tip_to_end_mm, 0)) - 0.001
          AND s.floor_mm + f.tip_to_end_mm >= g.value - 0.001 AS ok,

@@ -4,6 +4,7 @@
 -- message: {subject}: the screw looks out of the nut by {out_mm} mm, expected a pitch of {pitch_mm}
 --     mm
 -- reference: ISO 4161 practice: two threads or one pitch beyond the nut
+-- each: fits.shaft_instance
 SELECT f.shaft_instance || '.' || f.shaft || ' ' || f.hole_instance || '.' || f.hole AS subject,
        min(f.past_opening_mm, -f.tip_to_end_mm) >= f.pitch_mm - 0.001 AS ok,
        min(f.past_opening_mm, -f.tip_to_end_mm) AS out_mm,

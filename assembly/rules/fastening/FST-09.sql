@@ -3,6 +3,7 @@
 -- title: A locator cannot turn about its only screw
 -- message: {subject} is held by {joints} joint without a key, and can turn about it
 -- reference: two screws, or a screw and a pin or key
+-- each: instances.instance
 SELECT i.instance AS subject,
        count(DISTINCT f.holder) >= 2
          OR EXISTS (SELECT 1 FROM fastenings AS k WHERE k.holder = i.instance AND k.kind = 'key')

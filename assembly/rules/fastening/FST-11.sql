@@ -5,6 +5,7 @@
 -- reference: VDI 2230: 75 % of the yield strength over the stress area of ISO 898-1; torque
 --     0.2 F d; limit screw_yield_N_per_mm2. The preload is stated by `design SCREW preload_N`; the
 --     screw of a strap has at least the force that gives the strap's
+-- each: fits.shaft_instance
 WITH loaded(screw, thread_mm, pitch_mm) AS (
   SELECT f.shaft_instance, max(f.shaft_mm), max(f.pitch_mm)
   FROM fits AS f

@@ -4,6 +4,7 @@
 -- message: {subject}: {share} of its pad bears, expected {least}, and {face} is machined: {machined}
 -- reference: Carr Lane: locate on machined faces; limit pad_share_locator. Stated by `design
 --     WORKPIECE.FACE machined 1`
+-- each: pads.instance
 SELECT p.instance || ' ' || p.workpiece || '.' || p.face AS subject,
        CASE WHEN m.value IS NULL THEN NULL
             ELSE m.value = 1 AND p.area_mm2 >= l.value * min(p.pad_mm2, coalesce(s.value, p.pad_mm2))

@@ -4,6 +4,7 @@
 -- message: {subject}: {relief_mm} mm free around its root, expected {least_mm} mm
 -- reference: Fundamentals of Tool Design: chip relief; limit chip_relief_mm, stated by `design
 --     LOCATOR chip_relief_mm`
+-- each: locators.instance
 SELECT DISTINCT k.instance AS subject,
        s.value >= l.value AS ok,
        'nobody states its relief (`design ' || k.instance || ' chip_relief_mm MM reason TEXT`)'

@@ -3,6 +3,7 @@
 -- title: Stacks are low and of few pieces
 -- message: {subject} stands on {pieces} spacers, {height_mm} mm high and {width_mm} mm wide
 -- reference: few joints are stiff; limits stack_pieces and slenderness
+-- each: fits.shaft_instance
 WITH pieces(screw, instance, height_mm, width_mm) AS (
   SELECT DISTINCT f.shaft_instance,
          i.instance,

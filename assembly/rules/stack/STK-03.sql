@@ -4,6 +4,7 @@
 -- message: {subject}: {worst_mm} mm at worst ({likely_mm} mm by squares), expected {most_mm} mm
 -- reference: sum, and root of the sum of squares; limit stack_tolerance_mm, stated by `design PIECE
 --     height_tolerance_mm`
+-- each: fits.shaft_instance
 WITH pieces(screw, instance, tolerance_mm) AS (
   SELECT DISTINCT f.shaft_instance, i.instance, s.value
   FROM fits AS f

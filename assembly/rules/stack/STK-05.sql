@@ -3,6 +3,7 @@
 -- title: A part bears on most of its foot
 -- message: {subject}: {bearing_mm2} of {foot_mm2} mm2 of its foot bear, expected 70 %
 -- reference: bearing area of 70 %
+-- each: features.instance
 WITH foot(instance, z_mm, foot_mm2) AS (
   SELECT f.instance, f.z_mm, f.area_mm2
   FROM features AS f
@@ -15,14 +16,19 @@ WITH foot(instance, z_mm, foot_mm2) AS (
          OR (f.z_mm <= i.min_z_mm + 0.01
              AND NOT EXISTS (SELECT 1 FROM features AS s
                              WHERE s.instance = f.instance AND s.use IN ('seat', 'bottom'))))),
-bearing(instance, z_mm, area_mm2) AS (
-  SELECT a, z_mm, area_mm2 FROM seats WHERE nz < -0.999
-  UNION ALL
-  SELECT b, z_mm, area_mm2 FROM seats WHERE nz > 0.999)
-SELECT foot.instance AS subject,
-       coalesce(sum(b.area_mm2), 0) >= 0.7 * foot.foot_mm2 AS ok,
-       coalesce(sum(b.area_mm2), 0) AS bearing_mm2,
-       foot.foot_mm2
-FROM foot
-LEFT JOIN bearing AS b ON b.instance = foot.instance AND abs(b.z_mm - foot.z_mm) < 0.02
-GROUP BY foot.instance, foot.foot_mm2
+bearing(instance, foot_mm2, bearing_mm2) AS (
+  SELECT foot.instance,
+         foot.foot_mm2,
+         (SELECT coalesce(sum(s.area_mm2), 0)
+          FROM seats AS s
+          WHERE s.a = foot.instance AND s.nz < -0.999 AND abs(s.z_mm - foot.z_mm) < 0.02)
+         + (SELECT coalesce(sum(s.area_mm2), 0)
+            FROM seats AS s
+            WHERE s.b = foot.instance AND s.nz > 0.999 AND abs(s.z_mm - foot.z_mm) < 0.02)
+  FROM foot)
+SELECT instance AS subject,
+       sum(bearing_mm2) >= 0.7 * foot_mm2 AS ok,
+       sum(bearing_mm2) AS bearing_mm2,
+       foot_mm2
+FROM bearing
+GROUP BY instance, foot_mm2

@@ -31,6 +31,9 @@ struct Rule {
   std::string title;      ///< what has to be true
   std::string message;    ///< of a finding; "{column}" stands for a value of its row
   std::string reference;  ///< where it comes from
+  /// "TABLE.COLUMN, ...": it is evaluated for each text in these columns by itself and sees of
+  /// these tables the rows with it alone. Empty: evaluated whole.
+  std::string each;
   std::string file;
   std::string sql;  ///< with its header, so that lines are those of the file
 };
@@ -119,7 +122,8 @@ struct FunctionDescription {
 std::vector<FunctionDescription> describe_functions();
 
 /// Checks rules against a session's project. What a rule reads is known from its query: a check
-/// after an edit runs those rules alone whose facts have changed, and answers as a first one would.
+/// after an edit runs those rules alone whose facts have changed, of these with `each` those texts
+/// alone whose rows have, and answers as a first one would.
 class RuleChecker {
  public:
   /// Both must outlive it.
@@ -131,6 +135,8 @@ class RuleChecker {
   RuleReport check();
   /// Rules that the last check ran anew.
   std::size_t last_run() const;
+  /// Queries that it took: one a rule, or one for each text of its `each` that may have changed.
+  std::size_t last_queries() const;
 
  private:
   struct Impl;
