@@ -1,6 +1,8 @@
 // Rules and analysis as their users run them.
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -98,6 +100,40 @@ TEST_CASE("a broken rule is told with its place, and the others still run", "[ru
   CHECK(result.out.find("SHOP-02.sql:7: broken rule SHOP-02: no such column: typo") !=
         std::string::npos);
   CHECK(result.out.find("SHOP-01 PLATE") != std::string::npos);
+}
+
+namespace {
+
+/// Whether a log holds against the schema of SARIF 2.1.0.
+bool is_valid_sarif(const std::filesystem::path& file) {
+  const std::string command =
+      "\"" DOWEL_NODE "\" \"" DOWEL_SARIF_CHECK_SCRIPT "\" \"" + file.string() + "\"";
+  return std::system(command.c_str()) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("SARIF reports hold against the schema, and a spoilt one does not", "[rule]") {
+  const Desk desk(loose_fixture());
+  testing::write_text(desk.folder / "SHOP-01.sql", kRule);
+  testing::write_text(desk.folder / "SHOP-02.sql", "no rule");
+  std::string broken = kRule;
+  broken.replace(broken.find("SHOP-01"), 7, "SHOP-03");
+  broken.replace(broken.rfind("mass_kg <"), 7, "nobody ");
+  testing::write_text(desk.folder / "SHOP-03.sql", broken);
+  CHECK(desk.dowel({"rules", "waive", "LOC-02", "WORK", "reason", "known", "by", "QA"}).exit_code ==
+        0);
+  CHECK(desk.dowel({"rules", "override", "LOC-01", "off", "reason", "known"}).exit_code == 0);
+  const auto report =
+      desk.dowel({"rules", "check", "--rules", ".", "--format", "sarif", "--to", "r.sarif"});
+  INFO(report.out << report.err);
+  CHECK(report.exit_code == 3);
+  CHECK(is_valid_sarif(desk.folder / "r.sarif"));
+  Json log = Json::parse(testing::read_text(desk.folder / "r.sarif"));
+  CHECK(log["runs"][0]["results"].size() > 10);
+  log["runs"][0]["results"][0]["level"] = "awful";
+  testing::write_text(desk.folder / "spoilt.sarif", log.dump());
+  CHECK_FALSE(is_valid_sarif(desk.folder / "spoilt.sarif"));
 }
 
 TEST_CASE("SARIF, JUnit and HTML are what their readers expect", "[rule]") {
