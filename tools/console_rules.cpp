@@ -207,6 +207,13 @@ std::string read_subject(Arguments& arguments) {
   return subject;
 }
 
+/// Of a rule of a folder nothing is known where it is changed.
+std::string unless_shipped(const std::string& id) {
+  const RuleSet shipped = shipped_rules();
+  if (std::ranges::find(shipped.rules, id, &Rule::id) != shipped.rules.end()) return {};
+  return "; no rule of this name is shipped: it counts where a folder of rules has it";
+}
+
 Reply waive(Console& console, Arguments& arguments) {
   const std::string id = arguments.word("a rule");
   const std::string subject = read_subject(arguments);
@@ -230,7 +237,8 @@ Reply waive(Console& console, Arguments& arguments) {
   design.waivers[{id, subject}] = waiver;
   console.session().set_design(design, arguments.line());
   Reply reply;
-  reply.text = id + " is waived for " + subject + " as long as its geometry stays";
+  reply.text =
+      id + " is waived for " + subject + " as long as its geometry stays" + unless_shipped(id);
   return reply;
 }
 
@@ -263,7 +271,7 @@ Reply override_rule(Console& console, Arguments& arguments) {
   design.overrides[id] = change;
   console.session().set_design(design, arguments.line());
   Reply reply;
-  reply.text = id + " counts as " + change.severity;
+  reply.text = id + " counts as " + change.severity + unless_shipped(id);
   return reply;
 }
 
