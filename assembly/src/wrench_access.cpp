@@ -154,6 +154,7 @@ WrenchAccess WrenchBench::answer(Known& known, const std::vector<Placed>& near,
   WrenchAccess result;
   result.fastener = known.fastener.name;
   std::vector<const InWay*> parts;
+  parts.reserve(near.size());
   for (const Placed& part : near) parts.push_back(&in_way(known, part));
   for (std::size_t i = 0; i < known.rooms.wrenches.size(); ++i) {
     const WrenchRoom& room = known.rooms.wrenches[i];
