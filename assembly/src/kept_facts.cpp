@@ -16,17 +16,18 @@ using Rows = std::span<const FactRow>;
 std::vector<std::optional<std::size_t>> matches(Rows before, Rows after) {
   std::vector<std::size_t> order(before.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto row_at = [&](std::size_t i) -> const FactRow& { return before[i]; };
-  std::ranges::stable_sort(order, {}, row_at);
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return before[a] < before[b]; });
   std::vector<bool> is_taken(before.size(), false);
   std::vector<std::optional<std::size_t>> found(after.size());
   for (std::size_t j = 0; j < after.size(); ++j) {
-    for (const std::size_t i : std::ranges::equal_range(order, after[j], {}, row_at)) {
-      if (is_taken[i]) continue;
-      is_taken[i] = true;
-      found[j] = i;
-      break;
-    }
+    auto next =
+        std::lower_bound(order.begin(), order.end(), after[j],
+                         [&](std::size_t i, const FactRow& row) { return before[i] < row; });
+    while (next != order.end() && before[*next] == after[j] && is_taken[*next]) ++next;
+    if (next == order.end() || before[*next] != after[j]) continue;
+    is_taken[*next] = true;
+    found[j] = *next;
   }
   return found;
 }

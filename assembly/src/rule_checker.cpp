@@ -229,7 +229,8 @@ RuleReport RuleChecker::check() {
     self.judge(result, report);
     report.results.push_back(std::move(result));
   }
-  for (const auto& [key, waiver] : design.waivers) {
+  for (const auto& entry : design.waivers) {
+    const auto& key = entry.first;
     const bool is_in_use = std::ranges::any_of(report.results, [&](const RuleResult& result) {
       return result.rule.id == key.first &&
              std::ranges::any_of(result.findings, [&](const RuleFinding& finding) {

@@ -31,8 +31,7 @@ FactColumns each_columns(const Rule& rule, const FactReads& reads) {
 void RuleParts::put(const std::string& text, RulePart part) {
   drop(text);
   std::ranges::sort(part.lookups);
-  const auto same = std::ranges::unique(part.lookups);
-  part.lookups.erase(same.begin(), same.end());
+  part.lookups.erase(std::unique(part.lookups.begin(), part.lookups.end()), part.lookups.end());
   for (const FactLookup& lookup : part.lookups) {
     looked_up_[lookup.table][lookup.columns][lookup.key].insert(text);
   }
