@@ -347,7 +347,7 @@ Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p) {
 
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p, double within_squared_mm2) {
-  const FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
+  FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
   // The rim is on the face, and so no nearer than its foot.
   if (result.place != FacePoint::Place::Face || result.distance_squared_mm2 > within_squared_mm2) {
     return result;
