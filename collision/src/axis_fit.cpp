@@ -214,7 +214,10 @@ Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, dou
   result.gap_is_met =
       result.gap_is_met && least_side.gap_mm <= least_gap && least_side.gap_mm > -tolerance_mm;
   if (std::isfinite(least_side.gap_mm)) {
-    result.place_V = bore.origin + least_side.height_mm * axis.axis + least_side.wall;
+    // Where they overlap, in the middle of that.
+    const double beyond_mm = std::max(-0.5 * least_side.gap_mm, 0.0);
+    result.place_V = bore.origin + least_side.height_mm * axis.axis +
+                     (1.0 + beyond_mm / least_side.wall.norm()) * least_side.wall;
   }
   return result;
 }

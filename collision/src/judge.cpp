@@ -35,6 +35,7 @@ PairVerdict Judge::decide() {
   const bool is_free = shaft_fits() || are_shallow;
   if (is_decided_) return result_;
   if (!is_free) {
+    if (overfull_B_ && is_deep_at(*overfull_B_)) return result_;
     // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
     // before, they are likely to do so now.
     if (cores_overlap()) return result_;
@@ -125,10 +126,13 @@ bool Judge::take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
   const Pose& X_VS = shaft_is_in_a ? pair_.X_BA : X_AB_;
   const Fit fitted = fit(shaft, bore, X_VS, options_.tolerance_mm * (1.0 - kSafety),
                          shaft_is_in_a ? pair_.reliefs_B : reliefs_A());
-  if (!fitted.is_free) return false;
-  result_.method = Method::Exact;
   const Eigen::Vector3d place_B =
       shaft_is_in_a ? fitted.place_V : Eigen::Vector3d(pair_.X_BA * fitted.place_V);
+  if (!fitted.is_free) {
+    if (fitted.gap_mm < -options_.tolerance_mm) overfull_B_ = place_B;
+    return false;
+  }
+  result_.method = Method::Exact;
   if (fitted.gap_mm > options_.tolerance_mm) {
     result_.gap_mm = fitted.gap_mm;
     is_decided_ = true;

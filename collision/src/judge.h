@@ -84,6 +84,9 @@ class Judge {
 
   bool take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v);
 
+  /// Whether a witness of interference is found from where a shaft is too thick for its bore.
+  bool is_deep_at(const Eigen::Vector3d& place_B);
+
   /// The reliefs as A sees them. Valid until the next call.
   std::span<const ThreadRelief> reliefs_A();
 
@@ -212,6 +215,7 @@ class Judge {
 
   bool is_decided_ = false;
   bool cores_were_asked_ = false;
+  std::optional<Eigen::Vector3d> overfull_B_;  // where a shaft is too thick for its bore
   PairVerdict result_;
 };
 

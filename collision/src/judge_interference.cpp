@@ -171,6 +171,11 @@ bool Judge::try_witness(const std::optional<Witness>& witness) {
   return true;
 }
 
+bool Judge::is_deep_at(const Eigen::Vector3d& place_B) {
+  const double reach = kReachTolerances * options_.tolerance_mm;
+  return try_witness(find_witness(pair_, place_B, erosion_mm_, reach));
+}
+
 void Judge::look_for_containment() {
   for (const auto& inner : pair_.a.inner_points()) {
     if (try_inner_point(pair_.X_BA * inner.point, inner.depth_mm)) return;

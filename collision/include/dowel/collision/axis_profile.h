@@ -61,7 +61,8 @@ struct Fit {
   double gap_mm = -std::numeric_limits<double>::infinity();
   /// The gap is that of two round cylinders that face each other: the bodies are no further apart.
   bool gap_is_met = false;
-  /// Where shaft and bore come nearest, or overlap most; on the wall of the bore, in its frame.
+  /// Where shaft and bore come nearest, on the wall of the bore, or overlap most, in the middle of
+  /// the overlap; in the frame of the bore's body.
   Eigen::Vector3d place_V = Eigen::Vector3d::Zero();
 };
 
