@@ -18,6 +18,10 @@ namespace {
 /// interference is met before it is this much deeper than the tolerance.
 constexpr double kContactStep = 0.5;
 
+/// A step that is this small a share of the way left is worth a look at what cannot interfere on
+/// it.
+constexpr double kShortStep = 1.0 / 16.0;
+
 /// Accuracy of the time of impact, in tolerances of way.
 constexpr double kImpactAccuracy = 0.125;
 
@@ -125,8 +129,11 @@ class CollisionScene::Impl::PairSweep {
           return true;
         }
         if (verdict_.verdict == Verdict::Contact) note_contact();
-        step_mm =
-            verdict_.verdict == Verdict::Clear ? verdict_.gap_mm : step_in_contact(time, until);
+        if (verdict_.verdict == Verdict::Clear) step_mm = verdict_.gap_mm;
+        // What slides close by stays behind a plane as what slides in contact does.
+        if (step_mm < kShortStep * (until - time) * motion_.speed_mm()) {
+          step_mm = std::max(step_mm, step_in_contact(time, until));
+        }
       }
       free_time_ = time;
       if (time >= until || motion_.speed_mm() == 0.0) return false;
@@ -159,7 +166,8 @@ class CollisionScene::Impl::PairSweep {
     return boxes.plane < 0 ? 0.0 : boxes.gap_mm;
   }
 
-  /// How far the body may go from where it touches until an interference is possible.
+  /// How far the body may go from where it touches, or hardly does not, until an interference is
+  /// possible.
   double step_in_contact(double time, double until) {
     const double left_mm = (until - time) * motion_.speed_mm();
     if (shaft_stays_in_bore(time)) return left_mm;

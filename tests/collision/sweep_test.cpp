@@ -8,6 +8,7 @@ using dowel::BodyId;
 using dowel::CollisionScene;
 using dowel::FacetedSolid;
 using dowel::Pose;
+using dowel::QueryOptions;
 using dowel::SweepResult;
 using dowel::Verdict;
 namespace testing = dowel::testing;
@@ -95,7 +96,7 @@ TEST_CASE("a motion of no length is a check where the body stands") {
   CHECK(sweep(scene, block, away, away).verdict == Verdict::Contact);
 }
 
-TEST_CASE("a long slide in contact takes few tests, whatever its length") {
+TEST_CASE("a long slide in contact or close by takes few tests, whatever its length") {
   CollisionScene scene;
   scene.add(collision_element(
                 testing::plate_with_holes({400, 200, 20}, testing::hole_grid(9, 4, 40, 6.0), 16)),
@@ -108,6 +109,19 @@ TEST_CASE("a long slide in contact takes few tests, whatever its length") {
   CHECK(slide.verdict == Verdict::Contact);
   CHECK(slide.time_of_impact == 1.0);
   CHECK(scene.counters().triangle_tests < 2000);
+  // Hardly off the plate, with a part below it: the boxes overlap and say nothing.
+  scene.reset_counters();
+  const BodyId bar = scene.add(
+      collision_element(testing::merged(
+          testing::box({10, 60, 10}),
+          testing::transformed(Pose::from_translation({0, 0, -40}), testing::box({10, 60, 10})))),
+      Pose());
+  const double low_mm = 25.0 + 1.5 * QueryOptions().tolerance_mm;
+  const auto close_by = sweep(scene, bar, Pose::from_translation({-150, -95, low_mm}),
+                              Pose::from_translation({100, -95, low_mm}));
+  CHECK(close_by.verdict == Verdict::Clear);
+  CHECK(scene.counters().box_tests < 10'000);
+  scene.remove(bar);
   scene.reset_counters();
   const Pose turned = Pose::about_axis({-150, 0, 0}, Eigen::Vector3d::UnitZ(), 1.5) * from;
   CHECK(sweep(scene, riser, from, turned).time_of_impact == 1.0);
