@@ -265,9 +265,9 @@ std::vector<FactTable> locating_facts() {
 const std::vector<FactTable>& fact_tables() {
   static const std::vector<FactTable> kTables = [] {
     std::vector<FactTable> all;
-    for (const auto& make : {part_facts, mate_facts, pair_facts, axis_facts, locating_facts,
-                             design_facts, stated_facts, slot_facts, access_facts,
-                             washer_facts, order_facts}) {
+    for (const auto& make :
+         {part_facts, mate_facts, pair_facts, axis_facts, locating_facts, design_facts,
+          stated_facts, slot_facts, access_facts, washer_facts, order_facts}) {
       for (FactTable& table : make()) all.push_back(std::move(table));
     }
     std::ranges::sort(all, [](const FactTable& a, const FactTable& b) {
