@@ -53,18 +53,9 @@ struct RelativeBoxes {
   }
 };
 
-/// Along the normal of face `i` of a alone.
-double gap_of_face(const Obb& a, int i, const Obb& b) {
-  const Eigen::Vector3d normal = a.axes.col(i);
-  const double reach_b = (b.axes.transpose() * normal).cwiseAbs().dot(b.half_extents_mm);
-  return std::abs(normal.dot(b.center - a.center)) - a.half_extents_mm[i] - reach_b;
-}
-
 }  // namespace
 
-double gap_along(const Obb& a, const Obb& b, int plane) {
-  if (plane < 3) return gap_of_face(a, plane, b);
-  if (plane < 6) return gap_of_face(b, plane - 3, a);
+double gap_along_edges(const Obb& a, const Obb& b, int plane) {
   return RelativeBoxes(a, b).gap(plane);
 }
 

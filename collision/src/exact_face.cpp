@@ -113,9 +113,10 @@ double beyond_edge_by_length(const ModelTriangle& t, std::size_t i, const Eigen:
   return edge_of(t, i).cross(t.normal).dot(c - t.corners[i]);
 }
 
-/// In-plane distance of `c` from edge `i`, positive outside the triangle.
-double beyond_edge(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
-  return beyond_edge_by_length(t, i, c) / edge_of(t, i).norm();
+/// Whether that is no more than the facet's slack, on either side.
+bool is_near_edge(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
+  const double by_length = beyond_edge_by_length(t, i, c);
+  return by_length * by_length <= t.slack_mm * t.slack_mm * edge_of(t, i).squaredNorm();
 }
 
 /// Whether `c` is seen from edge `i` at a right angle: the rim's arc over a chord lies there and
@@ -153,7 +154,8 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t, const 
                      const Eigen::Vector3d& x) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (!is_chord(model, t, i)) continue;
-    if (beyond_edge_by_length(t, i, x) <= 0.0 || beyond_edge(t, i, c) > t.slack_mm) continue;
+    if (beyond_edge_by_length(t, i, x) <= 0.0) continue;
+    if (beyond_edge_by_length(t, i, c) > 0.0 && !is_near_edge(t, i, c)) continue;
     if (is_over_chord(t, i, c) && on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
       return true;
     }
@@ -166,7 +168,7 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t, const 
 /// chord, as the facet is seen along the face's normal.
 bool overhangs_rim(const CollisionModel& model, const Chord& chord, const Eigen::Vector3d& c) {
   const ModelTriangle& t = model.triangles()[chord.triangle];
-  return std::abs(beyond_edge(t, chord.edge, c)) <= t.slack_mm && is_over_chord(t, chord.edge, c) &&
+  return is_near_edge(t, chord.edge, c) && is_over_chord(t, chord.edge, c) &&
          !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
 }
 
@@ -272,17 +274,16 @@ FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriang
 }
 
 FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle& t,
-                                const Eigen::Vector3d& p) {
+                                const Eigen::Vector3d& p, double within_squared_mm2, bool is_over) {
   const Face& face = model.face(t.face);
-  if (t.slack_mm == 0.0) {
-    const TrianglePoint q = closest_on_triangle(t.corners, p);
-    if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
-    return nearest_on_rim_of_patch(model, t, q, p);
-  }
-  if (is_plane(face.surface)) {
-    const Eigen::Vector3d c = p - t.normal * t.normal.dot(p - t.corners[0]);
-    if (is_inside(t, c, 0.0) || is_short_of_rim(model, t, c, c))
-      return at(c, p, FacePoint::Place::Face);
+  if (t.slack_mm == 0.0 || is_plane(face.surface)) {
+    const double height = t.normal.dot(p - t.corners[0]);
+    const FacePoint foot{p - height * t.normal, height * height, FacePoint::Place::Face};
+    if (is_over || foot.distance_squared_mm2 > within_squared_mm2 ||
+        is_inside(t, foot.point, 0.0) ||
+        (t.slack_mm > 0.0 && is_short_of_rim(model, t, foot.point, foot.point))) {
+      return foot;
+    }
     const TrianglePoint q = closest_on_triangle(t.corners, p);
     // On the border the two notions of inside may differ by rounding.
     if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);
@@ -346,18 +347,21 @@ Eigen::Vector3d outward_normal(const Face& face, const Eigen::Vector3d& p) {
 }
 
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
-                           const Eigen::Vector3d& p, double within_squared_mm2) {
-  FacePoint result = nearest_with_overhang(model, model.triangles()[index], p);
+                           const Eigen::Vector3d& p, double within_squared_mm2, bool is_over) {
+  FacePoint result =
+      nearest_with_overhang(model, model.triangles()[index], p, within_squared_mm2, is_over);
   // The rim is on the face, and so no nearer than its foot.
   if (result.place != FacePoint::Place::Face || result.distance_squared_mm2 > within_squared_mm2) {
     return result;
   }
+  const std::span<const Chord> chords = model.overhangs(index);
+  if (chords.empty()) return result;
   // Where the foot is beyond the rim on both faces, the rim is nearest, and both have to look
   // there.
   FacePoint on_rim = result;
   on_rim.distance_squared_mm2 = std::numeric_limits<double>::infinity();
   bool overhangs = false;
-  for (const Chord& chord : model.overhangs(index)) {
+  for (const Chord& chord : chords) {
     if (!overhangs_rim(model, chord, result.point)) continue;
     overhangs = true;
     const ModelTriangle& t = model.triangles()[chord.triangle];

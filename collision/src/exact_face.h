@@ -46,9 +46,10 @@ struct FacePoint {
 /// over a rim comes near, the nearest place of that rim. Always a place of the boundary, up to
 /// terms of second order in the facet error; the smallest over all triangles is the distance. Where
 /// that is more than `within_squared_mm2`, any place beyond that distance: the caller has a nearer
-/// one.
+/// one. `is_over`: `p` is known to be over the triangle, seen along its normal.
 FacePoint nearest_on_patch(const CollisionModel& model, std::uint32_t index,
                            const Eigen::Vector3d& p,
-                           double within_squared_mm2 = std::numeric_limits<double>::infinity());
+                           double within_squared_mm2 = std::numeric_limits<double>::infinity(),
+                           bool is_over = false);
 
 }  // namespace dowel

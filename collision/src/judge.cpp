@@ -8,15 +8,8 @@
 
 #include "dowel/collision/axis_profile.h"
 #include "dowel/collision/box_separation.h"
-#include "exact_face.h"
 
 namespace dowel {
-namespace {
-
-/// A share of the tolerance that certificates keep for rounding.
-constexpr double kSafety = 1.0e-6;
-
-}  // namespace
 
 bool Judge::recall() {
   if (knows_cores() || knows_ball()) return true;
@@ -26,7 +19,7 @@ bool Judge::recall() {
     if (is_decided_) return true;
   }
   if (memory_.contact_a == PairMemory::kNone) return false;
-  return (is_free || are_still_shallow()) && still_touches();
+  return is_free && still_touches();
 }
 
 PairVerdict Judge::decide() {
@@ -71,12 +64,6 @@ bool Judge::boxes_are_shallow() {
   const BoxSeparation boxes = separate(obb_a_B, pair_.obb_b, overlap, memory_.shallow_plane);
   memory_.shallow_plane = static_cast<std::int8_t>(boxes.plane);
   return boxes.plane >= 0;
-}
-
-bool Judge::are_still_shallow() const {
-  return memory_.shallow_plane >= 0 &&
-         gap_along(transformed(pair_.X_BA, pair_.obb_a), pair_.obb_b, memory_.shallow_plane) >
-             -options_.tolerance_mm * (1.0 - kSafety);
 }
 
 bool Judge::shaft_fits() {
@@ -169,15 +156,7 @@ void Judge::for_each_pair(const Visit& visit) const {
 }
 
 void Judge::note_method(std::uint32_t i, std::uint32_t j) {
-  const ModelTriangle& a = pair_.a.triangles()[i];
-  const ModelTriangle& b = pair_.b.triangles()[j];
-  if (result_.method == Method::Boxes) result_.method = Method::Facets;
-  if (a.slack_mm + b.slack_mm > 0.0) result_.method = Method::Exact;
-  const Face& face_a = pair_.a.face(a.face);
-  const Face& face_b = pair_.b.face(b.face);
-  const double unknown = (is_exact(face_a) ? 0.0 : face_a.facet_error_mm) +
-                         (is_exact(face_b) ? 0.0 : face_b.facet_error_mm);
-  result_.bound_mm = std::max(result_.bound_mm, unknown);
+  dowel::note_method(pair_.a, i, pair_.b, j, result_);
 }
 
 }  // namespace dowel

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "facet_pairs.h"
+#include "kept_contact.h"
 #include "narrow_phase.h"
 #include "witness.h"
 
@@ -53,7 +54,8 @@ class Judge {
         memory_(memory),
         scratch_(scratch),
         counters_(counters),
-        erosion_mm_(0.5 * options.tolerance_mm) {}
+        erosion_mm_(0.5 * options.tolerance_mm),
+        contact_(pair.a, pair.b, options, memory, counters, result_) {}
 
   /// What was found out at the last pose, tested at this one, at a small part of the cost of
   /// `decide`. False where that decides nothing.
@@ -72,8 +74,6 @@ class Judge {
   // What forbids interference.
 
   bool boxes_are_shallow();
-
-  bool are_still_shallow() const;
 
   /// Looks for a shaft of one body in a bore of the other. May decide the pair.
   bool shaft_fits();
@@ -94,25 +94,15 @@ class Judge {
 
   void touch(double gap_mm, const Eigen::Vector3d& place_B);
 
-  /// Contact of facets `i` and `j`, at a place of either's face.
-  void touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
-             const Eigen::Vector3d& on_b);
-
   /// Whether the facets that were in contact still are, or what they slid on.
   bool still_touches();
 
-  /// The same where a place of either is known: that of A on the facet of B or where it slid to,
-  /// that of B on A, or else the two facets at another place.
+  /// The same where a place of either is known: there, on any facet near by, or else the two facets
+  /// at another place.
   bool touches_at_place();
 
   /// The same where none is.
   bool touches_again();
-
-  /// Whether a place of A's facet `i` is within the tolerance of what facet `j` of B stands for.
-  bool touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j);
-
-  /// The same for a place of B.
-  bool touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j);
 
   /// Whether a seat of one body is in contact on a plane of the other one.
   bool seat_touches();
@@ -217,6 +207,7 @@ class Judge {
   bool cores_were_asked_ = false;
   std::optional<Eigen::Vector3d> overfull_B_;  // where a shaft is too thick for its bore
   PairVerdict result_;
+  KeptContact contact_;
 };
 
 }  // namespace dowel

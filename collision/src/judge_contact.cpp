@@ -63,16 +63,6 @@ void Judge::touch(double gap_mm, const Eigen::Vector3d& place_B) {
   result_.witness_W = place_B;
 }
 
-void Judge::touch(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j,
-                  const Eigen::Vector3d& on_b) {
-  touch((on_a_B - on_b).norm(), 0.5 * (on_a_B + on_b));
-  memory_.contact_a = i;
-  memory_.contact_b = j;
-  memory_.has_contact_place = true;
-  memory_.contact_A = X_AB_ * on_a_B;
-  memory_.contact_B = on_b;
-}
-
 bool Judge::still_touches() {
   if (memory_.contact_a == PairMemory::kNone) return false;
   if (memory_.has_contact_place ? touches_at_place() : touches_again()) return true;
@@ -81,20 +71,20 @@ bool Judge::still_touches() {
 }
 
 bool Judge::touches_at_place() {
+  const auto in_B = [this](const Eigen::Vector3d& p_A) { return placement_ * p_A; };
+  const auto in_A = [this](const Eigen::Vector3d& p_B) { return X_AB_ * p_B; };
+  if (contact_.holds(in_B, in_A)) return true;
+  if (options_.holes == HoleMode::Paper) return false;
   const std::uint32_t i = memory_.contact_a;
   const std::uint32_t j = memory_.contact_b;
-  const Eigen::Vector3d on_a_B = placement_ * memory_.contact_A;
-  if (touches_at(i, on_a_B, j)) return true;
-  const Eigen::Vector3d on_b_A = X_AB_ * memory_.contact_B;
-  if (options_.holes == HoleMode::Paper) return touched_at(i, on_b_A, j);
-  const std::uint32_t walked_b = pair_.b.walk_towards(j, on_a_B);
-  if (walked_b != j && touches_at(i, on_a_B, walked_b)) return true;
-  const std::uint32_t walked_a = pair_.a.walk_towards(i, on_b_A);
-  if (touched_at(walked_a, on_b_A, j)) return true;
+  const Eigen::Vector3d on_a_A = memory_.contact_A;
+  const Eigen::Vector3d on_a_B = in_B(on_a_A);
   const auto near_b = pair_.b.nearest_within(on_a_B, options_.tolerance_mm);
-  if (near_b && touches_at(i, on_a_B, near_b->triangle)) return true;
+  if (near_b && contact_.touches_at(i, on_a_A, on_a_B, {near_b->triangle})) return true;
+  const Eigen::Vector3d on_b_B = memory_.contact_B;
+  const Eigen::Vector3d on_b_A = in_A(on_b_B);
   const auto near_a = pair_.a.nearest_within(on_b_A, options_.tolerance_mm);
-  if (near_a && touched_at(near_a->triangle, on_b_A, j)) return true;
+  if (near_a && contact_.touched_at({near_a->triangle}, on_b_A, j, on_b_B, in_B)) return true;
   return faces_lie_on_each_other(i, placement_ * pair_.a.triangles()[i], j);
 }
 
@@ -105,28 +95,9 @@ bool Judge::touches_again() {
   return near && touches(*near);
 }
 
-bool Judge::touches_at(std::uint32_t i, const Eigen::Vector3d& on_a_B, std::uint32_t j) {
-  ++counters_.triangle_tests;
-  const double reach_squared = options_.tolerance_mm * options_.tolerance_mm;
-  const FacePoint near = nearest_on_patch(pair_.b, j, on_a_B, reach_squared);
-  if (near.distance_squared_mm2 > reach_squared) return false;
-  note_method(i, j);
-  touch(i, on_a_B, j, near.point);
-  return true;
-}
-
-bool Judge::touched_at(std::uint32_t i, const Eigen::Vector3d& on_b_A, std::uint32_t j) {
-  ++counters_.triangle_tests;
-  const double reach_squared = options_.tolerance_mm * options_.tolerance_mm;
-  const FacePoint near = nearest_on_patch(pair_.a, i, on_b_A, reach_squared);
-  if (near.distance_squared_mm2 > reach_squared) return false;
-  note_method(i, j);
-  touch(i, placement_ * near.point, j, pair_.X_BA * on_b_A);
-  return true;
-}
-
 bool Judge::seat_touches() {
   if (options_.holes == HoleMode::Paper) return false;
+  const auto in_B = [this](const Eigen::Vector3d& p_A) { return placement_ * p_A; };
   for (const SeatPlane& a : pair_.a.seat_planes()) {
     const Eigen::Vector3d normal_B = placement_.rotation * a.plane.normal;
     const Eigen::Vector3d origin_B = placement_ * a.plane.origin;
@@ -135,14 +106,19 @@ bool Judge::seat_touches() {
       const double apart = std::abs(b.plane.normal.dot(origin_B - b.plane.origin));
       if (apart > kSeatApart * options_.tolerance_mm) continue;
       for (const Seat& seat : pair_.a.seats(a)) {
-        const Eigen::Vector3d on_a_B = placement_ * seat.point;
+        const Eigen::Vector3d on_a_B = in_B(seat.point);
         const auto near = pair_.b.nearest_within(on_a_B, options_.tolerance_mm);
-        if (near && touches_at(seat.triangle, on_a_B, near->triangle)) return true;
+        if (near && contact_.touches_at(seat.triangle, seat.point, on_a_B, {near->triangle})) {
+          return true;
+        }
       }
       for (const Seat& seat : pair_.b.seats(b)) {
         const Eigen::Vector3d on_b_A = X_AB_ * seat.point;
         const auto near = pair_.a.nearest_within(on_b_A, options_.tolerance_mm);
-        if (near && touched_at(near->triangle, on_b_A, seat.triangle)) return true;
+        if (near &&
+            contact_.touched_at({near->triangle}, on_b_A, seat.triangle, seat.point, in_B)) {
+          return true;
+        }
       }
     }
   }
@@ -166,14 +142,12 @@ bool Judge::faces_lie_on_each_other(std::uint32_t i, const PlacedTriangle& a_B, 
     return false;
   }
   const auto middle = middle_of_overlap(a_B.corners_B, b.corners, b.normal);
-  if (!middle || !is_between_faces(i, j, *middle)) return false;
-  note_method(i, j);
-  return true;
+  return middle && is_between_faces(i, j, *middle);
 }
 
 bool Judge::touches(const NarrowScratch::FacetPair& near) {
   if (near.is_flat) {
-    touch(near.a, near.on_a_B, near.b, near.on_b);
+    contact_.touch(near.a, X_AB_ * near.on_a_B, near.on_a_B, near.b, near.on_b);
     return true;
   }
   if (is_between_faces(near.a, near.b, near.on_b)) return true;
@@ -203,7 +177,7 @@ bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d o
     on_b = near_b.point;
     const double gap = std::sqrt(near_b.distance_squared_mm2);
     if (gap <= options_.tolerance_mm) {
-      touch(i, on_a, j, on_b);
+      contact_.touch(i, near_a.point, on_a, j, on_b);
       return true;
     }
     if (previous - gap < kProjectionGain * options_.tolerance_mm) return false;

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "dowel/collision/model.h"
+#include "narrow_phase.h"
 
 // What cannot take part in an interference. Private to collision.
 
@@ -39,9 +39,6 @@ class KeptOff {
   bool is_empty() const { return count_ == 0; }
 
  private:
-  /// A share of the tolerance kept for rounding.
-  static constexpr double kSafety = 1.0e-6;
-
   /// Facets end at a plane where they pass it by no more than this: rounding of placed coordinates.
   static constexpr double kPlaneSlack_mm = 1.0e-9;
 

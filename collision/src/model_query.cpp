@@ -178,26 +178,27 @@ std::optional<NearestPoint> CollisionModel::nearest_within(const Eigen::Vector3d
   return to_result(*this, best, point);
 }
 
-std::uint32_t CollisionModel::walk_towards(std::uint32_t start,
-                                           const Eigen::Vector3d& point) const {
+Footing CollisionModel::walk_towards(std::uint32_t start, const Eigen::Vector3d& point) const {
   std::uint32_t at = start;
   for (int step = 0; step < kWalk; ++step) {
     const ModelTriangle& t = triangles_[at];
     double most = 0.0;
     std::uint32_t next = at;
+    bool is_over = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (t.edges[i] != EdgeShape::Inner) continue;
       const Eigen::Vector3d edge = t.corners[(i + 1) % 3] - t.corners[i];
       const double beyond = edge.cross(t.normal).dot(point - t.corners[i]);
-      if (beyond > most) {
+      if (t.edges[i] != EdgeShape::Inner) {
+        is_over = is_over && beyond <= 0.0;
+      } else if (beyond > most) {
         most = beyond;
         next = t.beyond[i];
       }
     }
-    if (next == at) return at;
+    if (next == at) return {at, is_over};
     at = next;
   }
-  return at;
+  return {at, false};
 }
 
 NearestPoint CollisionModel::nearest_brute_force(const Eigen::Vector3d& point) const {

@@ -18,6 +18,9 @@ namespace dowel {
 
 class KeptOff;
 
+/// A share of the tolerance that certificates keep for rounding.
+inline constexpr double kSafety = 1.0e-6;
+
 /// Work space of the narrow phase, kept between queries so that they allocate nothing.
 struct NarrowScratch {
   struct NodePair {
@@ -59,7 +62,7 @@ struct ModelPair {
 struct PairMemory {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  /// Plane of the boxes behind which they overlapped by less than the tolerance, -1: none.
+  /// Plane of the boxes along which they overlapped by less than the tolerance, -1: none.
   std::int8_t shallow_plane = -1;
 
   /// Shaft and bore that fit, one in each body.
@@ -89,6 +92,9 @@ struct PairMemory {
   Eigen::Vector3d ball_B = Eigen::Vector3d::Zero();
   double ball_depth_a_mm = 0.0;
   double ball_depth_b_mm = 0.0;
+
+  /// Whether the pair was in contact at a known place and its boxes left no room for more.
+  bool may_rest() const { return shallow_plane >= 0 && contact_a != kNone && has_contact_place; }
 
   bool is_empty() const {
     return shaft == kNone && contact_a == kNone && core_a == kNone && ball_depth_a_mm <= 0.0;

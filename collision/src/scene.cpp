@@ -11,6 +11,7 @@
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "judge.h"
+#include "kept_contact.h"
 #include "scene_impl.h"
 
 namespace dowel {
@@ -22,7 +23,7 @@ constexpr std::size_t kMaxMovers = 64;
 /// Candidates are found with room for this many moves like the last, up to this share of the
 /// mover's size.
 constexpr double kStepsOfRoom = 40.0;
-constexpr double kSizesOfRoom = 0.5;
+constexpr double kSizesOfRoom = 0.75;
 
 /// Added to each step of a way: rounding of poses 100 m from the origin.
 constexpr double kWayRounding_mm = 1.0e-10;
@@ -203,50 +204,61 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   for (const std::uint32_t other : found) {
     if (other == mover.id.value) continue;
     while (old != old_candidates.end() && old->id.value < other) ++old;
-    const bool is_known = old != old_candidates.end() && old->id.value == other;
-    const Obb other_W = is_known ? old->obb_W : bodies[other].obb_W();
-    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
-    if (is_known) {
-      mover.candidates.push_back(*old);
-      mover.candidates.back().clear_until -= mover.way_mm;
-    } else {
-      mover.candidates.push_back({BodyId{other}, other_W, -1, 0.0, {}});
+    if (old != old_candidates.end() && old->id.value == other) {
+      old->clear_until -= mover.way_mm;
+      const bool is_beyond_room = old->plane >= 0 && old->clear_until >= room_mm;
+      if (!is_beyond_room) mover.candidates.push_back(*old);
+      continue;
     }
+    const Obb other_W = bodies[other].obb_W();
+    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
+    mover.candidates.push_back({BodyId{other}, other_W, -1, 0.0, {}});
   }
   mover.way_mm = 0.0;
   mover.listed_until = room_mm;
   mover.clear_until = 0.0;
 }
 
-std::optional<PairVerdict> CollisionScene::Impl::meet(Mover& mover, Candidate& candidate,
-                                                      const QueryOptions& options) {
-  ++counters.box_tests;
-  const auto stay_clear = [&](double gap_mm) {
-    candidate.clear_until = mover.way_mm + gap_mm - options.tolerance_mm;
-  };
-  const auto are_kept_apart = [&] {
-    const BoxSeparation boxes =
-        separate(mover.box_W(), candidate.obb_W, options.tolerance_mm, candidate.plane);
+bool CollisionScene::Impl::boxes_keep_apart(Mover& mover, Candidate& candidate,
+                                            double tolerance_mm) {
+  const Obb& obb_W = mover.box_W();
+  double gap_mm = candidate.plane >= 0 ? gap_along(obb_W, candidate.obb_W, candidate.plane) : 0.0;
+  if (gap_mm <= tolerance_mm) {
+    const BoxSeparation boxes = separate(obb_W, candidate.obb_W, tolerance_mm);
     candidate.plane = static_cast<std::int8_t>(boxes.plane);
-    if (boxes.plane >= 0) stay_clear(boxes.gap_mm);
-    return boxes.plane >= 0;
-  };
+    if (boxes.plane < 0) return false;
+    gap_mm = boxes.gap_mm;
+  }
+  candidate.clear_until = mover.way_mm + gap_mm - tolerance_mm;
+  return true;
+}
+
+bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryOptions& options,
+                                PairVerdict& verdict) {
+  ++counters.box_tests;
   // What met last time is likely to meet in the same way, whatever their boxes do.
   const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
-  if (!met && are_kept_apart()) return {};
+  if (!met && boxes_keep_apart(mover, candidate, options.tolerance_mm)) return false;
+  const Body& other = bodies[candidate.id.value];
+  if (candidate.memory.may_rest() &&
+      still_rests({mover.element->model(), mover.X_WB, mover.box_W()},
+                  {other.element->model(), other.X_WB, candidate.obb_W}, options, candidate.memory,
+                  counters, verdict)) {
+    return true;
+  }
   const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
   Judge judge(placed.pair, options, candidate.memory, scratch, counters);
   if (!judge.recall()) {
-    if (met && are_kept_apart()) return {};
+    if (met && boxes_keep_apart(mover, candidate, options.tolerance_mm)) return false;
     judge.decide();
   }
-  PairVerdict verdict = judge.result();
+  verdict = judge.result();
   if (verdict.verdict == Verdict::Clear) {
-    stay_clear(verdict.gap_mm);
-    return {};
+    candidate.clear_until = mover.way_mm + verdict.gap_mm - options.tolerance_mm;
+    return false;
   }
-  verdict.witness_W = bodies[candidate.id.value].X_WB * verdict.witness_W;
-  return verdict;
+  verdict.witness_W = other.X_WB * verdict.witness_W;
+  return true;
 }
 
 bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryOptions& options) {
@@ -257,16 +269,15 @@ bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryO
       clear_until = 0.0;  // who moves along may be another one next time
       continue;
     }
-    std::optional<PairVerdict> met;
-    if (mover.way_mm >= candidate.clear_until) met = meet(mover, candidate, options);
-    if (!met) {
+    PairVerdict met;
+    if (mover.way_mm < candidate.clear_until || !meet(mover, candidate, options, met)) {
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }
     clear_until = 0.0;
-    const bool is_last = options.first_only && met->verdict == Verdict::Interference;
+    const bool is_last = options.first_only && met.verdict == Verdict::Interference;
     if (is_last) verdicts.clear();
-    verdicts.push_back({mover.id, candidate.id, *met});
+    verdicts.push_back({mover.id, candidate.id, met});
     if (is_last) return false;
   }
   mover.clear_until = clear_until;
@@ -292,10 +303,11 @@ std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> movin
   DOWEL_EXPECTS(moving.size() == poses.size());
   impl_->verdicts.clear();
   ++impl_->query_count;
-  const Impl::MovingMark mark(*impl_, moving);
+  const bool is_alone = moving.size() == 1;
+  const Impl::MovingMark mark(*impl_, is_alone ? std::span<const BodyId>() : moving);
   for (std::size_t i = 0; i < moving.size(); ++i) {
     Impl::Mover& mover = impl_->mover_at(moving[i], poses[i], options);
-    if (!impl_->check_mover(mover, moving.size() == 1, options)) break;
+    if (!impl_->check_mover(mover, is_alone, options)) break;
   }
   return impl_->verdicts;
 }

@@ -122,9 +122,13 @@ struct CollisionScene::Impl {
   /// Finds the mover's candidates anew, with room for the moves to come.
   void find_candidates(Mover& mover, double step_mm);
 
-  /// Verdict on a mover and one of its candidates, witness in the world; nothing where the two are
-  /// clear: then the candidate says for how long.
-  std::optional<PairVerdict> meet(Mover& mover, Candidate& candidate, const QueryOptions& options);
+  /// Whether a plane keeps the boxes apart, the one that did so last before all others; then the
+  /// candidate says for how long.
+  static bool boxes_keep_apart(Mover& mover, Candidate& candidate, double tolerance_mm);
+
+  /// Whether a mover and one of its candidates are in contact or worse: then `verdict`, its witness
+  /// in the world. Else the candidate says for how long they are clear. Expects: a new `verdict`.
+  bool meet(Mover& mover, Candidate& candidate, const QueryOptions& options, PairVerdict& verdict);
 
   /// Appends the verdicts of one mover, which may move along with others, to `verdicts`; false once
   /// `first_only` ends the query.

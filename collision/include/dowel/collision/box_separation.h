@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "dowel/kernel/box.h"
 
 namespace dowel {
@@ -23,9 +25,22 @@ struct BoxSeparation {
 /// transformed; each box's reach along a normal is computed from its axes (Gottschalk 1996).
 BoxSeparation separate(const Obb& a, const Obb& b, double margin_mm, int hint = -1);
 
-/// Distance of the boxes along the normal of one of the planes (numbered as in `BoxSeparation`);
-/// negative where they overlap along it, -infinity where edges are parallel and give no plane.
-double gap_along(const Obb& a, const Obb& b, int plane);
+/// Distance of the boxes along the normal of face `i` of `a`; negative where they overlap along it.
+inline double gap_along_face(const Obb& a, int i, const Obb& b) {
+  const Eigen::Vector3d normal = a.axes.col(i);
+  const double reach_b = (b.axes.transpose() * normal).cwiseAbs().dot(b.half_extents_mm);
+  return std::abs(normal.dot(b.center - a.center)) - a.half_extents_mm[i] - reach_b;
+}
+
+/// The same along the normal of a plane of type 3; -infinity where edges are parallel and give
+/// none.
+double gap_along_edges(const Obb& a, const Obb& b, int plane);
+
+/// The same along the normal of any of the planes (numbered as in `BoxSeparation`).
+inline double gap_along(const Obb& a, const Obb& b, int plane) {
+  if (plane < 3) return gap_along_face(a, plane, b);
+  return plane < 6 ? gap_along_face(b, plane - 3, a) : gap_along_edges(a, b, plane);
+}
 
 /// The same question answered from the 2 x 8 corners and all 15 planes: the plane with the largest
 /// gap. Reference for tests.

@@ -64,6 +64,12 @@ struct Chord {
   std::uint32_t edge = 0;
 };
 
+/// Where a walk over a face ends, and whether the point walked to is over that facet or its edges.
+struct Footing {
+  std::uint32_t triangle = 0;
+  bool is_over = false;
+};
+
 /// A place inside a planar face, and a facet that it is on: where it is in contact is asked first.
 struct Seat {
   Eigen::Vector3d point;
@@ -125,7 +131,7 @@ class CollisionModel {
   /// The triangle that a walk from triangle `start` over inner edges towards `point` leads to: on a
   /// convex face the one that the point is over, if it is no dozen triangles away; `start` where
   /// that is it, or where a rim is in between. For points that slide over a face.
-  std::uint32_t walk_towards(std::uint32_t start, const Eigen::Vector3d& point) const;
+  Footing walk_towards(std::uint32_t start, const Eigen::Vector3d& point) const;
 
   /// The same by looking at every triangle. Reference for tests.
   NearestPoint nearest_brute_force(const Eigen::Vector3d& point) const;
