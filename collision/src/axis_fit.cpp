@@ -111,6 +111,19 @@ double lean(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b
   return result;
 }
 
+/// Whether two round steps are no further apart than the tolerance, whose `gap_mm` is a lower
+/// bound: the places compared may lie twice the tilt beyond the heights that both have, where the
+/// axes are closer by that times the sine, and the shaft's circle is foreshortened.
+bool is_met(const RelativeAxis& axis, const ProfileStep& a, const ProfileStep& b, double gap_mm,
+            double tolerance_mm) {
+  constexpr double kSecondOrder = 3.0;
+  if (!a.is_round || !b.is_round) return false;
+  const double tilt = a.most_radius_mm() * axis.sine;
+  const auto [low, high] = std::minmax({axis.at(a.from_mm), axis.at(a.to_mm)});
+  const double shared_mm = std::min(high, b.to_mm) - std::max(low, b.from_mm);
+  return shared_mm >= 2.0 * tilt && gap_mm + kSecondOrder * tilt * axis.sine <= tolerance_mm;
+}
+
 /// What two steps leave between them over the heights that they share.
 struct SideGap {
   double gap_mm = kInfinity;                       ///< negative: the shaft passes the bore's radius
@@ -199,7 +212,7 @@ Fit fit(const AxisProfile& shaft, const AxisProfile& bore, const Pose& X_VS, dou
       const SideGap side = side_gap(axis, a, b, both, travel_mm);
       if (side.gap_mm < least_side.gap_mm) {
         least_side = side;
-        result.gap_is_met = a.is_round && b.is_round;
+        result.gap_is_met = is_met(axis, a, b, side.gap_mm, tolerance_mm);
       }
       if (side.gap_mm < 0.0 &&
           !in_relief(bore, reliefs_V, both, b.most_radius_mm() - side.gap_mm)) {

@@ -26,17 +26,25 @@ PairVerdict Judge::decide() {
   const bool are_shallow = boxes_are_shallow();
   if (are_shallow && still_touches()) return result_;
   const bool is_free = shaft_fits() || are_shallow;
-  if (is_decided_) return result_;
+  if (is_decided_) {
+    counters_.note(Skip::Fits);
+    return result_;
+  }
   if (!is_free) {
     if (overfull_B_ && is_deep_at(*overfull_B_)) return result_;
     // Where bodies are deep in each other, a deep point tells so at once. Where facets crossed
     // before, they are likely to do so now.
-    if (cores_overlap()) return result_;
+    if (cores_overlap()) {
+      counters_.note(Skip::Cores);
+      return result_;
+    }
     look_for_containment();
     if (is_interference() || still_crosses()) return result_;
   }
-  const bool is_contact = (!are_shallow && still_touches()) || seat_touches();
-  if (!is_contact || !is_free) look_among_facets(!is_free);
+  const bool touches_still = !are_shallow && still_touches();
+  const bool is_seated = !touches_still && seat_touches();
+  if (is_seated) counters_.note(Skip::Seats);
+  if (!(touches_still || is_seated) || !is_free) look_among_facets(!is_free);
   return result_;
 }
 
@@ -59,15 +67,17 @@ PairVerdict Judge::decide_by_brute_force() {
 }
 
 bool Judge::boxes_are_shallow() {
+  if (leaves_out(Skip::ShallowBoxes)) return false;
   const Obb obb_a_B = transformed(pair_.X_BA, pair_.obb_a);
   const double overlap = -options_.tolerance_mm * (1.0 - kSafety);
   const BoxSeparation boxes = separate(obb_a_B, pair_.obb_b, overlap, memory_.shallow_plane);
   memory_.shallow_plane = static_cast<std::int8_t>(boxes.plane);
+  if (boxes.plane >= 0) counters_.note(Skip::ShallowBoxes);
   return boxes.plane >= 0;
 }
 
 bool Judge::shaft_fits() {
-  if (options_.holes == HoleMode::Paper) return false;
+  if (options_.holes == HoleMode::Paper || leaves_out(Skip::Fits)) return false;
   // A pin that stands on a plate is free of each of its holes; the one that it stands over says
   // how far it is from the plate.
   bool is_free = memory_.shaft != PairMemory::kNone &&

@@ -71,6 +71,8 @@ class Judge {
   const PairVerdict& result() const { return result_; }
 
  private:
+  bool leaves_out(Skip skip) const { return options_.without.contains(skip); }
+
   // What forbids interference.
 
   bool boxes_are_shallow();

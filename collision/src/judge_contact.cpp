@@ -96,7 +96,7 @@ bool Judge::touches_again() {
 }
 
 bool Judge::seat_touches() {
-  if (options_.holes == HoleMode::Paper) return false;
+  if (options_.holes == HoleMode::Paper || leaves_out(Skip::Seats)) return false;
   const auto in_B = [this](const Eigen::Vector3d& p_A) { return placement_ * p_A; };
   for (const SeatPlane& a : pair_.a.seat_planes()) {
     const Eigen::Vector3d normal_B = placement_.rotation * a.plane.normal;

@@ -40,12 +40,13 @@ void Judge::list_near_leaves(bool may_interfere, double& apart) {
   const double tolerance_mm = options_.tolerance_mm;
   KeptOff kept_off_a;
   KeptOff kept_off_b;
-  if (may_interfere) {
+  if (may_interfere && !leaves_out(Skip::KeptOff)) {
     const auto heights = [](const Obb& box) {
       return [box](const PlaneSurface& plane) { return height_of(box, plane); };
     };
     kept_off_a = KeptOff(pair_.a, tolerance_mm, heights(transformed(X_AB_, pair_.obb_b)));
     kept_off_b = KeptOff(pair_.b, tolerance_mm, heights(transformed(pair_.X_BA, pair_.obb_a)));
+    if (!kept_off_a.is_empty() || !kept_off_b.is_empty()) counters_.note(Skip::KeptOff);
   }
   const auto may_cross = [&](const BvhNode& a, const BvhNode& b) {
     return may_interfere && !kept_off_a.contains(a) && !kept_off_b.contains(b);

@@ -45,6 +45,7 @@ bool Judge::knows_cores() {
 bool Judge::cores_overlap() {
   if (cores_were_asked_) return false;
   cores_were_asked_ = true;
+  if (leaves_out(Skip::Cores)) return false;
   if (!pair_.reliefs_B.empty() || options_.holes == HoleMode::Paper) return false;
   const auto overlap = find_overlap(pair_.a.cores(), pair_.b.cores(), pair_.X_BA, erosion_mm_);
   return overlap && take_overlap(*overlap);

@@ -173,9 +173,11 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   const Eigen::Vector3d center_W = X_WB * mover.element->obb().center;
   const Eigen::Vector4d turn = X_WB.rotation().coeffs() - mover.X_WB.rotation().coeffs();
   double step_mm = 0.0;
-  if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes) {
+  if (mover.tolerance_mm != options.tolerance_mm || mover.holes != options.holes ||
+      mover.without != options.without) {
     mover.tolerance_mm = options.tolerance_mm;
     mover.holes = options.holes;
+    mover.without = options.without;
     mover.candidates.clear();
     mover.listed_until = -1.0;
   } else if (mover.listed_until >= 0.0) {
@@ -194,10 +196,12 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
 
 void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   const Obb& obb_W = mover.box_W();
-  const double room_mm = std::min(kStepsOfRoom * step_mm, kSizesOfRoom * mover.radius_mm);
+  const double room_mm = mover.without.contains(Skip::Way)
+                             ? 0.0
+                             : std::min(kStepsOfRoom * step_mm, kSizesOfRoom * mover.radius_mm);
   const double margin_mm = mover.tolerance_mm + room_mm;
   const Silhouette outline = silhouette(obb_W);
-  projection.query(bounds(obb_W).padded(margin_mm), found);
+  find_bodies(bounds(obb_W).padded(margin_mm), mover.without);
   std::swap(mover.candidates, old_candidates);
   mover.candidates.clear();
   auto old = old_candidates.begin();
@@ -211,7 +215,11 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
       continue;
     }
     const Obb other_W = bodies[other].obb_W();
-    if (are_apart(outline, silhouette(other_W), margin_mm)) continue;
+    if (!mover.without.contains(Skip::Silhouettes) &&
+        are_apart(outline, silhouette(other_W), margin_mm)) {
+      counters.note(Skip::Silhouettes);
+      continue;
+    }
     mover.candidates.push_back({BodyId{other}, other_W, -1, 0.0, {}});
   }
   mover.way_mm = 0.0;
@@ -219,8 +227,21 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
   mover.clear_until = 0.0;
 }
 
+void CollisionScene::Impl::find_bodies(const Aabb& box_W, SkipSet without) {
+  if (!without.contains(Skip::Layers)) {
+    projection.query(box_W, found);
+    counters.note(Skip::Layers, projection.size() - found.size());
+    return;
+  }
+  found.clear();
+  for (std::uint32_t id = 0; id < bodies.size(); ++id) {
+    if (bodies[id].element != nullptr) found.push_back(id);
+  }
+}
+
 bool CollisionScene::Impl::boxes_keep_apart(Mover& mover, Candidate& candidate,
                                             double tolerance_mm) {
+  if (mover.without.contains(Skip::Planes)) return false;
   const Obb& obb_W = mover.box_W();
   double gap_mm = candidate.plane >= 0 ? gap_along(obb_W, candidate.obb_W, candidate.plane) : 0.0;
   if (gap_mm <= tolerance_mm) {
@@ -230,12 +251,17 @@ bool CollisionScene::Impl::boxes_keep_apart(Mover& mover, Candidate& candidate,
     gap_mm = boxes.gap_mm;
   }
   candidate.clear_until = mover.way_mm + gap_mm - tolerance_mm;
+  counters.note(Skip::Planes);
   return true;
 }
 
 bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryOptions& options,
                                 PairVerdict& verdict) {
   ++counters.box_tests;
+  if (mover.without.contains(Skip::Memory)) {
+    candidate.plane = -1;
+    candidate.memory = {};
+  }
   // What met last time is likely to meet in the same way, whatever their boxes do.
   const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
   if (!met && boxes_keep_apart(mover, candidate, options.tolerance_mm)) return false;
@@ -244,11 +270,14 @@ bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryO
       still_rests({mover.element->model(), mover.X_WB, mover.box_W()},
                   {other.element->model(), other.X_WB, candidate.obb_W}, options, candidate.memory,
                   counters, verdict)) {
+    counters.note(Skip::Memory);
     return true;
   }
   const PlacedPair placed(*this, mover.id, mover.X_WB, candidate.id);
   Judge judge(placed.pair, options, candidate.memory, scratch, counters);
-  if (!judge.recall()) {
+  if (judge.recall()) {
+    counters.note(Skip::Memory);
+  } else {
     if (met && boxes_keep_apart(mover, candidate, options.tolerance_mm)) return false;
     judge.decide();
   }
@@ -262,7 +291,11 @@ bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryO
 }
 
 bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryOptions& options) {
-  if (mover.way_mm < mover.clear_until) return true;
+  const bool knows_way = !options.without.contains(Skip::Way);
+  if (knows_way && mover.way_mm < mover.clear_until) {
+    counters.note(Skip::Way, mover.candidates.size());
+    return true;
+  }
   double clear_until = mover.listed_until;
   for (Candidate& candidate : mover.candidates) {
     if (!is_alone && bodies[candidate.id.value].is_moving) {
@@ -270,7 +303,9 @@ bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryO
       continue;
     }
     PairVerdict met;
-    if (mover.way_mm < candidate.clear_until || !meet(mover, candidate, options, met)) {
+    const bool is_clear = knows_way && mover.way_mm < candidate.clear_until;
+    if (is_clear) counters.note(Skip::Way);
+    if (is_clear || !meet(mover, candidate, options, met)) {
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }

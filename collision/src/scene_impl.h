@@ -64,6 +64,7 @@ struct CollisionScene::Impl {
     double clear_until = -1.0;   // nothing at all
     double tolerance_mm = 0.0;   // of the queries that this was found for
     HoleMode holes = HoleMode::Exact;
+    SkipSet without;
     std::uint64_t last_use = 0;
     std::vector<Candidate> candidates;  // by id
 
@@ -122,9 +123,12 @@ struct CollisionScene::Impl {
   /// Finds the mover's candidates anew, with room for the moves to come.
   void find_candidates(Mover& mover, double step_mm);
 
+  /// Lists the bodies whose boxes overlap `box_W` as `found`, by id.
+  void find_bodies(const Aabb& box_W, SkipSet without);
+
   /// Whether a plane keeps the boxes apart, the one that did so last before all others; then the
   /// candidate says for how long.
-  static bool boxes_keep_apart(Mover& mover, Candidate& candidate, double tolerance_mm);
+  bool boxes_keep_apart(Mover& mover, Candidate& candidate, double tolerance_mm);
 
   /// Whether a mover and one of its candidates are in contact or worse: then `verdict`, its witness
   /// in the world. Else the candidate says for how long they are clear. Expects: a new `verdict`.

@@ -121,6 +121,57 @@ TEST_CASE("a fit is free exactly where the cylinders leave room", "[property]") 
   CHECK(blocked > 2000);
 }
 
+TEST_CASE("of a tilted shaft a fit says no more room than there is, nor a contact that is none",
+          "[property]") {
+  const CollisionModel plate = model_of(testing::plate_with_holes({60, 60, 20}, {{0, 0, 6.0}}, 16));
+  const AxisProfile& bore = plate.profiles().bores[0];
+  testing::RandomGeometry random(43);
+  const double t = 0.01;
+  const double length = 12.0;
+  constexpr int kRulings = 1000;
+  constexpr double kSampling_mm = 6.0 * 1.3e-6;  // of a circle by its rulings
+  // The shaft's side is made of straight lines, each of which is furthest from the bore's axis
+  // where it ends or passes an end of the bore.
+  const auto room_mm = [&](const Pose& X_WS, double radius) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < kRulings; ++k) {
+      const double angle = 2.0 * 3.14159265358979 * k / kRulings;
+      const Eigen::Vector3d foot =
+          X_WS * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+      const Eigen::Vector3d along = X_WS.rotation() * Eigen::Vector3d::UnitZ();
+      const double from = std::max(0.0, -foot.z() / along.z());
+      const double to = std::min(length, (20.0 - foot.z()) / along.z());
+      if (from > to) continue;
+      for (const double s : {from, to}) {
+        least = std::min(least, 6.0 - (foot + s * along).head<2>().norm());
+      }
+    }
+    return least;
+  };
+  int met = 0;
+  int apart = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double radius = 6.0 - std::pow(10.0, random.uniform(-2.0, 0.0));
+    const double tilt = std::pow(10.0, random.uniform(-4.0, -1.05));
+    AxisProfile shaft;
+    shaft.steps = {{0.0, length, radius, radius, true}};
+    const double turn = random.uniform(0.0, 7.0);
+    const Eigen::Vector3d about(std::cos(turn), std::sin(turn), 0.0);
+    const double off = random.uniform(0.0, 6.0 - radius);
+    const Pose X_WS(Eigen::Quaterniond(Eigen::AngleAxisd(tilt, about)),
+                    {off, 0.0, random.uniform(-length, 20.0)});
+    const Fit fitted = fit(shaft, bore, X_WS, t, {});
+    const double room = room_mm(X_WS, radius);
+    CAPTURE(i, radius, tilt, off, room);
+    REQUIRE(fitted.gap_mm <= room + 1e-9);
+    if (fitted.gap_is_met) REQUIRE(room <= t + kSampling_mm);
+    met += fitted.gap_is_met ? 1 : 0;
+    apart += fitted.gap_mm > t ? 1 : 0;
+  }
+  CHECK(met > 1000);
+  CHECK(apart > 1000);
+}
+
 TEST_CASE("a pin tilts in its bore until it jams, by the exact cylinders", "[property]") {
   const double clearance = 0.05;
   const double length = 20.0;

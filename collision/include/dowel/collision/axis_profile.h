@@ -59,7 +59,7 @@ struct Fit {
   bool is_free = false;
   /// Lower bound of the distance of the bodies, where they are free; may be negative.
   double gap_mm = -std::numeric_limits<double>::infinity();
-  /// The gap is that of two round cylinders that face each other: the bodies are no further apart.
+  /// Two round cylinders that face each other are no further apart than the tolerance.
   bool gap_is_met = false;
   /// Where shaft and bore come nearest, on the wall of the bore, or overlap most, in the middle of
   /// the overlap; in the frame of the bore's body.

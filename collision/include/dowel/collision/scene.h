@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -58,10 +59,16 @@ struct BodyVerdict {
   PairVerdict pair;
 };
 
-/// Counters of the paper: N_b and N_p, summed over the queries of one scene.
+/// Counters of the paper, N_b and N_p, and of what was spared, summed over the queries of one
+/// scene.
 struct QueryCounters {
   std::uint64_t box_tests = 0;       ///< OBB against OBB, elements and tree nodes
   std::uint64_t triangle_tests = 0;  ///< triangle pairs that were looked at
+  /// Pairs on which each skip decided, or (ShallowBoxes, KeptOff) whose search it made shorter; of
+  /// Layers and Silhouettes each time that a body's candidates are found.
+  std::array<std::uint64_t, kSkipCount> uses{};
+
+  void note(Skip skip, std::uint64_t pairs = 1) { uses[static_cast<std::size_t>(skip)] += pairs; }
 };
 
 struct SweepResult {

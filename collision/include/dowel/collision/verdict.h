@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -25,11 +26,51 @@ std::string_view to_string(Method method);
 /// Peng et al. 2009 (a pin in a hole that is too small goes unseen).
 enum class HoleMode : std::uint8_t { Exact, Paper };
 
+/// What spares a query work, and never changes a verdict.
+enum class Skip : std::uint8_t {
+  Way,           ///< who is further than a body has gone since is not asked about
+  Layers,        ///< layers, cells and intervals: only who is there is a candidate
+  Silhouettes,   ///< candidates whose silhouettes are apart are none
+  Planes,        ///< a plane that keeps the boxes apart
+  Memory,        ///< what decided on a pair last time is tried first
+  ShallowBoxes,  ///< no interference is sought where the boxes have no room for one
+  Fits,          ///< a shaft in its bore is judged by their profiles
+  Cores,         ///< blocks and bars inside the solids that overlap tell an interference
+  Seats,         ///< places of planar faces tell a contact
+  KeptOff,       ///< no interference is sought behind planes that have the other body before them
+};
+inline constexpr std::size_t kSkipCount = 10;
+
+std::string_view to_string(Skip skip);
+
+/// A set of skips.
+class SkipSet {
+ public:
+  constexpr SkipSet() = default;
+  constexpr SkipSet(Skip skip) : bits_(1U << static_cast<unsigned>(skip)) {}
+
+  static constexpr SkipSet all() {
+    SkipSet result;
+    result.bits_ = (1U << kSkipCount) - 1U;
+    return result;
+  }
+
+  constexpr bool contains(Skip skip) const {
+    return (bits_ >> static_cast<unsigned>(skip) & 1U) != 0;
+  }
+  constexpr bool operator==(const SkipSet&) const = default;
+
+ private:
+  std::uint32_t bits_ = 0;
+};
+
 struct QueryOptions {
   double tolerance_mm = kDefaultTolerance_mm;
   HoleMode holes = HoleMode::Exact;
   bool first_only = false;     ///< stop at the first interference
   bool measure_depth = false;  ///< improve the lower bound of an interference's depth
+  /// Left out, to measure what a skip is worth and to test that no verdict depends on it.
+  SkipSet without = {};
 };
 
 /// Answer for one pair of bodies.
