@@ -18,6 +18,9 @@ constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
 /// facets may be anywhere along them, the length of the shorter one more.
 constexpr double kReachTolerances = 64.0;
 
+/// A pose at which cores are asked in vain costs as much as some tens that find the ball again.
+constexpr int kMostPosesWithoutCores = 31;
+
 double longest_edge(const Corners& corners) {
   return std::sqrt(
       std::max({(corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[1]).squaredNorm(),
@@ -48,6 +51,9 @@ bool Judge::cores_overlap() {
   if (leaves_out(Skip::Cores)) return false;
   if (!pair_.reliefs_B.empty() || options_.holes == HoleMode::Paper) return false;
   const auto overlap = find_overlap(pair_.a.cores(), pair_.b.cores(), pair_.X_BA, erosion_mm_);
+  memory_.poses_without_cores =
+      overlap ? 0 : std::min(2 * memory_.poses_without_cores + 1, kMostPosesWithoutCores);
+  memory_.poses_until_cores = memory_.poses_without_cores;
   return overlap && take_overlap(*overlap);
 }
 
@@ -71,7 +77,11 @@ bool Judge::knows_ball() {
   const Eigen::Vector3d ball_B = pair_.X_BA * memory_.ball_A;
   double depth_b = memory_.ball_depth_b_mm - (ball_B - memory_.ball_B).norm();
   const bool is_plain = !options_.measure_depth && pair_.reliefs_B.empty();
-  if ((depth_b < erosion_mm_ || !is_plain) && cores_overlap()) return true;
+  if (depth_b < erosion_mm_ || !is_plain) {
+    const bool is_time = memory_.poses_until_cores == 0;
+    if (!is_time) --memory_.poses_until_cores;
+    if ((is_time || !is_plain) && cores_overlap()) return true;
+  }
   if (depth_b < erosion_mm_ && is_plain) {
     // The same point of A may be deep in B at another place.
     const NearestPoint near = pair_.b.nearest(ball_B);

@@ -85,6 +85,9 @@ struct PairMemory {
   /// Cores that overlapped, and a point of both in the frame of A.
   std::uint32_t core_a = kNone;
   std::uint32_t core_b = kNone;
+  /// Cores that were apart are asked again after some poses, each time twice as many.
+  int poses_without_cores = 0;
+  int poses_until_cores = 0;
   Eigen::Vector3d in_cores_A = Eigen::Vector3d::Zero();
 
   /// A ball in both bodies: its centre and its depth in each; depth 0: none.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -39,6 +40,7 @@ class Checker {
   struct Counters {
     std::uint64_t box_tests = 0;
     std::uint64_t triangle_tests = 0;
+    std::array<std::uint64_t, kSkipCount> skips{};  ///< of dowel: how often each was used
   };
   virtual std::optional<Counters> take_counters() { return {}; }
 };

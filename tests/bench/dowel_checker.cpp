@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <vector>
 
@@ -16,7 +15,8 @@ class DowelChecker : public Checker {
   explicit DowelChecker(const DowelMode& mode)
       : options_{.tolerance_mm = mode.tolerance_mm,
                  .holes = mode.holes,
-                 .first_only = mode.first_only},
+                 .first_only = mode.first_only,
+                 .without = mode.without},
         mode_(mode) {}
 
   void prepare(const ElementPtr& element) override { (void)shared(element)->model(); }
@@ -35,12 +35,6 @@ class DowelChecker : public Checker {
   }
 
   Answer check(const Pose& X_WM) override {
-    // What is remembered holds for one tolerance: another one, by the least there is, drops it.
-    if (mode_.forgets) {
-      options_.tolerance_mm = options_.tolerance_mm == mode_.tolerance_mm
-                                  ? std::nextafter(mode_.tolerance_mm, 1.0)
-                                  : mode_.tolerance_mm;
-    }
     const Verdict verdict =
         mode_.uses_brute_force
             ? worst(scene_.check_brute_force({&moving_, 1}, {&X_WM, 1}, options_))
@@ -62,7 +56,8 @@ class DowelChecker : public Checker {
   }
 
   std::optional<Counters> take_counters() override {
-    const Counters result{scene_.counters().box_tests, scene_.counters().triangle_tests};
+    const QueryCounters& counters = scene_.counters();
+    const Counters result{counters.box_tests, counters.triangle_tests, counters.uses};
     scene_.reset_counters();
     return result;
   }

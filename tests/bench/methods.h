@@ -33,8 +33,8 @@ struct DowelMode {
   HoleMode holes = HoleMode::Exact;
   bool first_only = false;
   bool knows_facets_alone = false;  ///< curved faces as their facets, as of a mesh file
-  bool forgets = false;             ///< nothing is remembered from one check to the next
   bool uses_brute_force = false;    ///< all facets of all elements
+  SkipSet without = {};
 };
 
 std::unique_ptr<Checker> make_dowel(const DowelMode& mode);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/silhouette.h"
-#include "layer_worth.h"
 
 namespace dowel::bench {
 
@@ -71,34 +71,105 @@ void count_untested(Checker& checker, const Motion& motion, Skips& skips) {
 
 /// A check in one of dowel's ways.
 struct Way {
-  const char* name = "";
+  std::string name;
   DowelMode mode;
-  std::size_t most_poses = 0;
+  std::size_t most_poses = std::numeric_limits<std::size_t>::max();
 };
 
-const std::array<Way, 4>& ways() {
-  static const std::array<Way, 4> kWays{
-      {{"as it is", {}, ~std::size_t{0}},
-       {"nothing remembered", {.forgets = true}, ~std::size_t{0}},
-       {"hole triangles dropped", {.holes = HoleMode::Paper}, ~std::size_t{0}},
-       {"all facets of all elements", {.uses_brute_force = true}, 3}}};
-  return kWays;
+constexpr SkipSet kRemembered = SkipSet(Skip::Way) | SkipSet(Skip::Memory);
+
+/// As it is, without each of the skips, without what is remembered from move to move, without any
+/// skip, and by brute force.
+std::vector<Way> ways() {
+  std::vector<Way> result{{"as it is", {}}};
+  for (std::size_t i = 0; i < kSkipCount; ++i) {
+    const auto skip = static_cast<Skip>(i);
+    result.push_back({std::string(to_string(skip)), {.without = skip}});
+  }
+  result.push_back({"way, memory", {.without = kRemembered}});
+  result.push_back({"all of them", {.without = SkipSet::all()}, 200});
+  result.push_back({"all facets", {.uses_brute_force = true}, 1});
+  return result;
 }
 
-/// Mean time of a check; poses are those at equal steps, but for brute force all.
-double mean_us(const Scenario& scene, const Motion& motion, const Way& way, std::size_t rounds) {
+/// At equal steps, no more than `most`.
+std::vector<std::size_t> chosen(std::size_t poses, std::size_t most) {
+  std::vector<std::size_t> result(std::min(poses, most));
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = (2 * i + 1) * poses / (2 * result.size());
+  }
+  return result;
+}
+
+/// What a way takes, and where it says something else than dowel as it is.
+struct Cost {
+  double sum_us = 0.0;
+  std::size_t poses = 0;
+  std::size_t changed = 0;
+  std::vector<Verdict> verdicts;
+};
+
+void measure(const Scenario& scene, const Motion& motion, const Way& way, std::size_t rounds,
+             const std::vector<Verdict>& expected, Cost& cost) {
   const std::unique_ptr<Checker> checker = checker_of(scene, way.mode);
-  std::vector<Pose> poses = motion.poses;
-  if (poses.size() > way.most_poses) {
-    for (std::size_t i = 0; i < way.most_poses; ++i) {
-      poses[i] = poses[(2 * i + 1) * poses.size() / (2 * way.most_poses)];
-    }
-    poses.resize(way.most_poses);
-    rounds = 1;
+  const std::vector<std::size_t> places = chosen(motion.poses.size(), way.most_poses);
+  std::vector<Pose> poses;
+  for (const std::size_t place : places) poses.push_back(motion.poses[place]);
+  cost.verdicts.clear();
+  for (const Pose& pose : poses) cost.verdicts.push_back(*checker->check(pose).verdict);
+  for (std::size_t i = 0; i < places.size() && !expected.empty(); ++i) {
+    if (cost.verdicts[i] != expected[places[i]]) ++cost.changed;
   }
   Run run = blank_run(poses.size());
-  for (std::size_t round = 0; round < rounds; ++round) run_batch(*checker, poses, run);
-  return run.batch_mean_us;
+  const bool is_brute = way.mode.uses_brute_force;
+  for (std::size_t round = 0; round < (is_brute ? 1 : rounds); ++round) {
+    run_batch(*checker, poses, run);
+  }
+  cost.sum_us += run.batch_mean_us * static_cast<double>(poses.size());
+  cost.poses += poses.size();
+}
+
+/// A row of what each way takes; `scenes` alike.
+std::vector<std::string> worth_row(const std::vector<Scenario>& scenes, MotionKind kind,
+                                   const Plan& plan) {
+  const std::vector<Way> all = ways();
+  std::vector<Cost> costs(all.size());
+  for (const Scenario& scene : scenes) {
+    const Motion motion = motion_of(scene, kind, plan.poses);
+    std::vector<Verdict> expected;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      measure(scene, motion, all[i], plan.rounds, expected, costs[i]);
+      if (i == 0) expected = costs[i].verdicts;
+    }
+  }
+  std::vector<std::string> row{std::string(to_string(kind))};
+  std::size_t changed = 0;
+  for (const Cost& cost : costs) {
+    row.push_back(text(cost.sum_us / static_cast<double>(cost.poses)));
+    changed += cost.changed;
+  }
+  row.push_back(std::to_string(changed));
+  return row;
+}
+
+/// How often each skip is used, of 1,000 moves.
+std::vector<std::string> uses_row(const std::vector<Scenario>& scenes, MotionKind kind,
+                                  const Plan& plan) {
+  std::array<double, kSkipCount> uses{};
+  double poses = 0.0;
+  for (const Scenario& scene : scenes) {
+    const Motion motion = motion_of(scene, kind, plan.poses);
+    const std::unique_ptr<Checker> checker = checker_of(scene, {});
+    for (const Pose& pose : motion.poses) (void)checker->check(pose);
+    const auto counters = checker->take_counters();
+    for (std::size_t i = 0; i < kSkipCount; ++i) {
+      uses.at(i) += static_cast<double>(counters->skips.at(i));
+    }
+    poses += static_cast<double>(motion.poses.size());
+  }
+  std::vector<std::string> row{std::string(to_string(kind))};
+  for (const double count : uses) row.push_back(text(1000.0 * count / poses));
+  return row;
 }
 
 std::string share_of(std::size_t part, std::size_t whole) {
@@ -126,29 +197,36 @@ std::vector<Table> run_skip_study(const Plan& plan) {
                {"motion, field", "heights", "x, y", "silhouettes", "type 1", "type 2", "type 3",
                 "left", "moves without test"},
                {}};
-  Table worth{"What the skips are worth",
-              "Microseconds of a check, mean of scene (a): as it is; with nothing remembered from "
-              "move to move; with the triangles of holes dropped as in the paper; and by looking "
-              "at all facets of all elements, without layers, boxes, trees or memory (three "
-              "poses).",
+  Table uses{"How often each skip is used",
+             "Of 1,000 moves, means of all scenes: pairs on which it decides; of shallow boxes and "
+             "of planes that keep off, pairs whose search it makes shorter; of layers and "
+             "silhouettes, each time that the elements near by are looked for. The names are those "
+             "of the library (collision/verdict.h).",
+             {"motion"},
+             {}};
+  Table worth{"What each skip is worth",
+              "Mean microseconds of a check, all scenes: as it is; with one skip left out; without "
+              "both that remember from move to move; without all of them (200 poses a scene); and "
+              "by looking at all facets of all elements (one). None may change a verdict; last "
+              "column: verdicts that did change.",
               {"motion"},
               {}};
-  for (const Way& way : ways()) worth.columns.emplace_back(way.name);
+  for (const Way& way : ways()) worth.columns.push_back(way.name);
+  worth.columns.emplace_back("changed");
+  for (std::size_t i = 0; i < kSkipCount; ++i) {
+    uses.columns.emplace_back(to_string(static_cast<Skip>(i)));
+  }
   const std::vector<Scenario> scenes = paper_scenarios();
   for (const MotionKind kind : plan.kinds) {
     Skips skips;
-    std::vector<std::string> worth_row{std::string(to_string(kind))};
     for (const Scenario& scene : scenes) {
       const Motion motion = motion_of(scene, kind, plan.poses);
       count_pairs(scene, motion, skips);
       count_untested(*checker_of(scene, {}), motion, skips);
-      if (&scene != &scenes.front()) continue;
-      for (const Way& way : ways()) {
-        worth_row.push_back(text(mean_us(scene, motion, way, plan.rounds)));
-      }
     }
-    worth.rows.push_back(std::move(worth_row));
     counts.rows.push_back(row_of(std::string(to_string(kind)), skips));
+    uses.rows.push_back(uses_row(scenes, kind, plan));
+    worth.rows.push_back(worth_row(scenes, kind, plan));
   }
   for (std::size_t count = 100; count <= (plan.poses < 500 ? 1'000U : 10'000U); count *= 10) {
     const Scenario field = field_of_elements(count);
@@ -158,10 +236,7 @@ std::vector<Table> run_skip_study(const Plan& plan) {
     count_untested(*checker_of(field, {}), path, skips);
     counts.rows.push_back(row_of(field.title, skips));
   }
-  std::vector<Table> tables = layer_worth(plan);
-  tables.insert(tables.begin(), std::move(counts));
-  tables.push_back(std::move(worth));
-  return tables;
+  return {counts, uses, worth};
 }
 
 }  // namespace dowel::bench

@@ -58,6 +58,10 @@ class SkipSet {
   constexpr bool contains(Skip skip) const {
     return (bits_ >> static_cast<unsigned>(skip) & 1U) != 0;
   }
+  constexpr SkipSet operator|(SkipSet other) const {
+    other.bits_ |= bits_;
+    return other;
+  }
   constexpr bool operator==(const SkipSet&) const = default;
 
  private:
