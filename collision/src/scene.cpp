@@ -166,6 +166,7 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
   mover.last_use = query_count;
   if (mover.listed_until < 0.0) {
     mover.element = body(id).element.get();
+    mover.box_is_upright = mover.element->obb().axes == Eigen::Matrix3d::Identity();
     mover.radius_mm = mover.element->obb().half_extents_mm.norm();
     mover.obb_W = transformed(X_WB, mover.element->obb());
     mover.axes_are_old = false;
@@ -338,11 +339,14 @@ std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> movin
   DOWEL_EXPECTS(moving.size() == poses.size());
   impl_->verdicts.clear();
   ++impl_->query_count;
-  const bool is_alone = moving.size() == 1;
-  const Impl::MovingMark mark(*impl_, is_alone ? std::span<const BodyId>() : moving);
+  if (moving.size() == 1) {
+    impl_->check_mover(impl_->mover_at(moving[0], poses[0], options), true, options);
+    return impl_->verdicts;
+  }
+  const Impl::MovingMark mark(*impl_, moving);
   for (std::size_t i = 0; i < moving.size(); ++i) {
     Impl::Mover& mover = impl_->mover_at(moving[i], poses[i], options);
-    if (!impl_->check_mover(mover, is_alone, options)) break;
+    if (!impl_->check_mover(mover, false, options)) break;
   }
   return impl_->verdicts;
 }

@@ -55,6 +55,7 @@ struct CollisionScene::Impl {
   struct Mover {
     BodyId id;
     bool axes_are_old = false;
+    bool box_is_upright = false;  // in its element's frame, as most are
     const CollisionElement* element = nullptr;
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
@@ -70,8 +71,11 @@ struct CollisionScene::Impl {
 
     /// The box at the pose asked about. Most moves do not need its axes.
     const Obb& box_W() {
-      if (axes_are_old) obb_W.axes = X_WB.rotation_matrix() * element->obb().axes;
-      axes_are_old = false;
+      if (axes_are_old) {
+        obb_W.axes = X_WB.rotation_matrix();
+        if (!box_is_upright) obb_W.axes = obb_W.axes * element->obb().axes;
+        axes_are_old = false;
+      }
       return obb_W;
     }
   };
