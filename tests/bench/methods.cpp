@@ -26,6 +26,7 @@ std::vector<Method> peers() {
 #ifdef DOWEL_BENCH_ODE
       {"ODE", make_ode, 1, 10'000},
 #endif
+      {"AABB tree", make_aabb_tree},
 #ifdef DOWEL_BENCH_BULLET
       {"Bullet", make_bullet},
 #endif

@@ -24,7 +24,7 @@ struct Method {
 std::vector<Method> all_methods();
 
 /// Those that were found at build time: "FCL OBBRSS" and "FCL OBB", the same in single precision
-/// ("... float"), "ODE", "Bullet", "CGAL".
+/// ("... float"), "ODE", "Bullet", "CGAL". After "ODE" our own "AABB tree", which is always there.
 std::vector<Method> peers();
 
 /// How dowel is asked.
@@ -44,6 +44,7 @@ std::unique_ptr<Checker> make_fcl_obb();
 std::unique_ptr<Checker> make_fcl_obbrss_float();
 std::unique_ptr<Checker> make_fcl_obb_float();
 std::unique_ptr<Checker> make_ode();
+std::unique_ptr<Checker> make_aabb_tree();
 std::unique_ptr<Checker> make_bullet();
 std::unique_ptr<Checker> make_cgal();
 
