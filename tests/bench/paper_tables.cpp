@@ -79,9 +79,9 @@ Table colliding_moves(const Results& results) {
   Table table{"Colliding moves (the paper's Table 2)",
               "Per 1,000 moves of the motion \"insert\", and what the paper prints for its own, "
               "unpublished motions: collisions, N_b (box tests), N_p (triangle pairs) and mean "
-              "microseconds. RAPID's method is FCL OBB here, SOLID's the AABB trees of ODE, "
-              "which tells no counts. The paper defines N_p as \"number of actual colliding "
-              "triangle pairs\" and discusses it as tests; ours are tests.",
+              "microseconds. RAPID's method is FCL OBB here, SOLID's \"AABB tree\", written for "
+              "this comparison, and ODE, which tells no counts. The paper defines N_p as \"number "
+              "of actual colliding triangle pairs\" and discusses it as tests; ours are tests.",
               {"scene, method", "collisions", "N_b", "N_p", "time"},
               {}};
   for (const Published& paper : kPublished) {

@@ -160,7 +160,8 @@ void write_counters(std::ostream& out, const Results& results) {
          "N_p "
          "(box pairs, of elements and of tree nodes / triangle pairs). FCL: pairs of elements that "
          "its tree over them leaves and pairs of nodes, / pairs of leaves, by its own counters. "
-         "ODE, Bullet and CGAL count nothing that a user could read.\n\n";
+         "AABB tree: the same behind the layers. ODE, Bullet and CGAL count nothing that a user "
+         "could read.\n\n";
   std::vector<std::string> columns{"scene, method"};
   const std::vector<MotionKind> kinds = kinds_of(results);
   for (const MotionKind kind : kinds) columns.emplace_back(to_string(kind));
