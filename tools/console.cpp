@@ -197,6 +197,7 @@ const Command* find_command(std::string_view word) {
 const Command& command_for(const Word& word) {
   if (const Command* found = find_command(word.text)) return *found;
   std::vector<std::string> names;
+  names.reserve(kCommands.size());
   for (const Command& command : kCommands) names.emplace_back(command.word);
   const std::vector<std::string> similar = similar_words(word.text, names);
   throw CommandError(ErrorCode::InvalidInput,

@@ -257,7 +257,7 @@ Reply step_reply(const std::vector<std::string>& commands, const std::string& do
                  const std::string& nothing) {
   Reply reply;
   for (const std::string& command : commands) {
-    reply.text += (reply.text.empty() ? "" : "\n") + done + ": " + command;
+    reply.text.append(reply.text.empty() ? "" : "\n").append(done).append(": ").append(command);
   }
   if (commands.empty()) reply.text = nothing;
   reply.json["commands"] = commands;

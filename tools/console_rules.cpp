@@ -145,6 +145,7 @@ Reply facts(Arguments& arguments) {
   const auto fact = std::ranges::find(all, name, &FactDescription::table);
   if (fact == all.end()) {
     std::vector<std::string> names;
+    names.reserve(all.size());
     for (const FactDescription& known : all) names.push_back(known.table);
     arguments.fail_at_last("no facts are called \"" + name + "\"" +
                            did_you_mean(similar_words(name, names)));

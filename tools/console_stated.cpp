@@ -49,7 +49,7 @@ bool is_subject(const ProjectState& state, Session& session, const std::string& 
 }
 
 std::string read_subject(Console& console, Arguments& arguments) {
-  const std::string name = arguments.word("an instance, INSTANCE.FEATURE, element or point");
+  std::string name = arguments.word("an instance, INSTANCE.FEATURE, element or point");
   const ProjectState& state = console.session().state();
   if (is_subject(state, console.session(), name)) return name;
   std::vector<std::string> names;

@@ -116,9 +116,10 @@ std::string report_text(const RuleReport& report, const ReportOptions&) {
             ": the geometry has changed, or there is nothing to waive\n";
   }
   for (const RuleResult& result : report.results) {
-    if (!result.override_) continue;
+    if (!result.overridden_by) continue;
     text += "override " + result.rule.id + ": " + std::string(to_string(result.rule.severity)) +
-            " counts as " + result.override_->severity + " (" + result.override_->reason + ")\n";
+            " counts as " + result.overridden_by->severity + " (" + result.overridden_by->reason +
+            ")\n";
   }
   for (const std::string& rule : report.unknown_overrides) {
     text += "override of " + rule + ": there is no such rule\n";
@@ -150,9 +151,9 @@ Json report_json(const RuleReport& report, const ReportOptions& options) {
               {"reference", result.rule.reference},
               {"state", result.broken ? "broken" : std::string(to_string(result.state()))},
               {"facts", result.facts}};
-    if (result.override_) {
-      rule["override"] = {{"severity", result.override_->severity},
-                          {"reason", result.override_->reason}};
+    if (result.overridden_by) {
+      rule["override"] = {{"severity", result.overridden_by->severity},
+                          {"reason", result.overridden_by->reason}};
     }
     rule["subjects"] = Json::array();
     for (const RuleFinding& finding : result.findings) {

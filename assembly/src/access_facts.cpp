@@ -50,7 +50,7 @@ FactRows cutters(FactSource& source) {
   return rows;
 }
 
-constexpr unsigned kFromFixture = kFromParts | kFromMates | kFromDesign | kFromTolerance;
+constexpr unsigned kFromFixture = FromParts | FromMates | FromDesign | FromTolerance;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ std::vector<FactTable> access_facts() {
         {"length_mm", "of cutter and holder, as `design POINT cutter_length_mm` states it"},
         {"free", "1: clear of all parts but the workpiece; NULL where a size is not stated"},
         {"in_way", "instances; NULL where there is none"}},
-       kFromParts | kFromDesign | kFromTolerance,
+       FromParts | FromDesign | FromTolerance,
        cutters},
       {"wrenches",
        "Screws and nuts with a hexagon, and the wrench that turns each: hexagon key, socket or "

@@ -245,7 +245,7 @@ FasteningPlan plan_fastening(Session& session, const FeatureName& hole) {
     told("from the slot ", bolts.reason);
     plan.ways.insert(plan.ways.end(), bolts.ways.begin(), bolts.ways.end());
     // What holds by a whole nut before what holds by a low one.
-    std::ranges::stable_partition(plan.ways, [](const Fastening& way) {
+    std::stable_partition(plan.ways.begin(), plan.ways.end(), [](const Fastening& way) {
       return way.engagement_mm >= kTeeNutEngagement * way.screw.nominal_mm - kCoincident_mm;
     });
     bore.holes.push_back(below->name);

@@ -44,7 +44,7 @@ double number_from(const Json& json) {
 
 Eigen::Vector3d vector_from(const Json& json) {
   const auto values = json.get<std::array<double, 3>>();
-  const Eigen::Vector3d vector(values[0], values[1], values[2]);
+  Eigen::Vector3d vector(values[0], values[1], values[2]);
   if (!vector.allFinite()) throw Error(ErrorCode::FileMalformed, "a vector is not finite");
   return vector;
 }

@@ -229,6 +229,7 @@ std::unique_ptr<FactDatabase::Query> FactDatabase::prepare(const std::string& sq
 std::vector<std::string> FactDatabase::columns(const Query& query) const {
   std::vector<std::string> names;
   const int count = sqlite3_column_count(query.impl_->statement);
+  names.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     names.emplace_back(sqlite3_column_name(query.impl_->statement, i));
   }

@@ -136,7 +136,7 @@ FactValue access(FactSource& source, Arguments arguments) {
   return found->swing_rad * 180.0 / std::numbers::pi;
 }
 
-constexpr unsigned kFromFixture = kFromParts | kFromDesign | kFromTolerance;
+constexpr unsigned kFromFixture = FromParts | FromDesign | FromTolerance;
 
 }  // namespace
 
@@ -145,21 +145,21 @@ const std::vector<FactFunction>& fact_functions() {
       {"access", "fastener", 1,
        "angle in degrees through which a wrench turns the screw or nut freely; 0 where none gets "
        "onto it, NULL where it has no hexagon",
-       kFromFixture | kFromMates, access},
+       kFromFixture | FromMates, access},
       {"condition", "workpiece", 1,
        "condition number of its locators; NULL below rank 6 and for what is no workpiece",
        kFromFixture, condition},
       {"depth", "a, b", 2, "by how many mm two instances are in each other at least; 0: not",
-       kFromParts | kFromTolerance, depth},
-      {"engagement", "screw, part", 2, "mm of the screw's thread in the part's; 0: none",
-       kFromParts, engagement},
+       FromParts | FromTolerance, depth},
+      {"engagement", "screw, part", 2, "mm of the screw's thread in the part's; 0: none", FromParts,
+       engagement},
       {"fit_max", "nominal_mm, hole, shaft", 3,
        "most clearance in um of two ISO 286 classes, as fit_max(12, 'H7', 'g6'); NULL for what is "
        "no fit",
        0U, fit_max},
       {"fit_min", "nominal_mm, hole, shaft", 3, "least clearance in um; below 0: interference", 0U,
        fit_min},
-      {"gap", "a, b", 2, "mm between two instances, to a micrometre; NULL beyond 10", kFromParts,
+      {"gap", "a, b", 2, "mm between two instances, to a micrometre; NULL beyond 10", FromParts,
        gap},
       {"rank", "workpiece", 1, "of its locator matrix: 6 settles it; NULL for what is no workpiece",
        kFromFixture, rank},

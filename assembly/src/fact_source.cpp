@@ -58,10 +58,10 @@ std::shared_ptr<const FacetedSolid> FactSource::solid(const std::string& element
 unsigned FactSource::update() {
   const ProjectState& now = session_.state();
   unsigned changed = 0;
-  if (!has_state_ || now.instances != state_.instances) changed |= kFromParts;
-  if (!has_state_ || now.mates != state_.mates) changed |= kFromMates;
-  if (!has_state_ || !(now.design == state_.design)) changed |= kFromDesign;
-  if (!has_state_ || now.tolerance_mm != state_.tolerance_mm) changed |= kFromTolerance;
+  if (!has_state_ || now.instances != state_.instances) changed |= FromParts;
+  if (!has_state_ || now.mates != state_.mates) changed |= FromMates;
+  if (!has_state_ || !(now.design == state_.design)) changed |= FromDesign;
+  if (!has_state_ || now.tolerance_mm != state_.tolerance_mm) changed |= FromTolerance;
   has_state_ = true;
   if (changed == 0) return 0;
   state_ = now;

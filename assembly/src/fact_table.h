@@ -22,12 +22,7 @@ struct FactColumn {
 };
 
 /// Parts of a project's state that a fact can be made of.
-enum FactInput : unsigned {
-  kFromParts = 1U,
-  kFromMates = 2U,
-  kFromDesign = 4U,
-  kFromTolerance = 8U
-};
+enum FactInput : unsigned { FromParts = 1U, FromMates = 2U, FromDesign = 4U, FromTolerance = 8U };
 
 /// A table of facts: computed when a rule first reads it, and again after its inputs changed.
 struct FactTable {

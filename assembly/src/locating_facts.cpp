@@ -138,7 +138,7 @@ FactRows orientation_rows(FactSource& source) {
   return rows;
 }
 
-constexpr unsigned kFromAll = kFromParts | kFromDesign | kFromTolerance;
+constexpr unsigned kFromAll = FromParts | FromDesign | FromTolerance;
 
 }  // namespace
 

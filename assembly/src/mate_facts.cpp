@@ -64,7 +64,7 @@ std::vector<FactTable> mate_facts() {
         {"slides", "directions in which it can slide"},
         {"turns", "axes about which it can turn"},
         {"against", "part that this is told against where no grounded one is in reach; else NULL"}},
-       kFromParts | kFromMates,
+       FromParts | FromMates,
        freedoms},
       {"mates",
        "Mates that the project holds.",
@@ -80,7 +80,7 @@ std::vector<FactTable> mate_facts() {
         {"off_axis_mm", "by how much it is missed now"},
         {"off_angle_deg", ""},
         {"off_along_mm", ""}},
-       kFromParts | kFromMates,
+       FromParts | FromMates,
        mates},
   };
 }
@@ -92,7 +92,7 @@ std::vector<FactTable> design_facts() {
             {"value", "in force"},
             {"given", "1: by the project; 0: the usual one"},
             {"meaning", "one line"}},
-           kFromDesign,
+           FromDesign,
            limit_rows}};
 }
 

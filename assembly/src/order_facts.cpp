@@ -41,7 +41,7 @@ std::vector<FactTable> order_facts() {
             {"step", "0: there first; NULL: it does not come in"},
             {"free", "1: it comes in"},
             {"blocked_by", "on the first way that was tried; NULL where it comes in"}},
-           kFromParts | kFromMates | kFromDesign | kFromTolerance,
+           FromParts | FromMates | FromDesign | FromTolerance,
            assembly_order}};
 }
 

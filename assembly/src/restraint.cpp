@@ -19,12 +19,12 @@ namespace {
 /// force is known to.
 constexpr double kBalanced = 1.0e-6;
 
-/// Columns `passive` of A that solve best by least squares.
-Eigen::VectorXd solve_on(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
+/// Columns `passive` of `a` that solve best by least squares.
+Eigen::VectorXd solve_on(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                          const std::vector<Eigen::Index>& passive) {
-  Eigen::MatrixXd part(A.rows(), static_cast<Eigen::Index>(passive.size()));
+  Eigen::MatrixXd part(a.rows(), static_cast<Eigen::Index>(passive.size()));
   for (std::size_t i = 0; i < passive.size(); ++i) {
-    part.col(static_cast<Eigen::Index>(i)) = A.col(passive[i]);
+    part.col(static_cast<Eigen::Index>(i)) = a.col(passive[i]);
   }
   return part.colPivHouseholderQr().solve(b);
 }
@@ -48,18 +48,18 @@ Wrench wrench_of(const Eigen::Vector3d& force_N, const Eigen::Vector3d& at,
   return wrench;
 }
 
-NonNegative non_negative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  DOWEL_EXPECTS(A.allFinite() && b.allFinite() && A.rows() == b.size());
+NonNegative non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  DOWEL_EXPECTS(a.allFinite() && b.allFinite() && a.rows() == b.size());
   NonNegative result;
-  result.x = Eigen::VectorXd::Zero(A.cols());
+  result.x = Eigen::VectorXd::Zero(a.cols());
   std::vector<Eigen::Index> passive;
   // A gradient of a column that is smaller than this is rounding.
-  const double zero = 1.0e-12 * std::max(1.0e-300, A.norm() * b.norm());
-  const Eigen::Index most_steps = 3 * A.cols() + 30;
+  const double zero = 1.0e-12 * std::max(1.0e-300, a.norm() * b.norm());
+  const Eigen::Index most_steps = 3 * a.cols() + 30;
   for (Eigen::Index step = 0;; ++step) {
-    const Eigen::VectorXd gradient = A.transpose() * (b - A * result.x);
+    const Eigen::VectorXd gradient = a.transpose() * (b - a * result.x);
     Eigen::Index next = -1;
-    for (Eigen::Index i = 0; i < A.cols(); ++i) {
+    for (Eigen::Index i = 0; i < a.cols(); ++i) {
       if (std::ranges::find(passive, i) != passive.end() || gradient[i] <= zero) continue;
       if (next < 0 || gradient[i] > gradient[next]) next = i;
     }
@@ -69,7 +69,7 @@ NonNegative non_negative_least_squares(const Eigen::MatrixXd& A, const Eigen::Ve
       break;
     }
     passive.push_back(next);
-    Eigen::VectorXd solution = solve_on(A, b, passive);
+    Eigen::VectorXd solution = solve_on(a, b, passive);
     while (solution.size() > 0 && solution.minCoeff() <= 0.0) {
       // Back along the way to it, to where the first one reaches zero; that one goes.
       double share = 1.0;
@@ -92,13 +92,13 @@ NonNegative non_negative_least_squares(const Eigen::MatrixXd& A, const Eigen::Ve
         }
       }
       passive = kept;
-      solution = passive.empty() ? Eigen::VectorXd() : solve_on(A, b, passive);
+      solution = passive.empty() ? Eigen::VectorXd() : solve_on(a, b, passive);
     }
     for (std::size_t i = 0; i < passive.size(); ++i) {
       result.x[passive[i]] = solution[static_cast<Eigen::Index>(i)];
     }
   }
-  result.residual = (A * result.x - b).norm();
+  result.residual = (a * result.x - b).norm();
   return result;
 }
 
@@ -141,7 +141,7 @@ ForceClosure force_closure(std::span<const FrictionContact> contacts, const Loca
   const auto clamps = std::ranges::count_if(
       contacts, [](const FrictionContact& contact) { return contact.preload_N.has_value(); });
   const auto columns = static_cast<Eigen::Index>(contacts.size()) * kConeEdges;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 + clamps, columns);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(6 + clamps, columns);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(6 + clamps);
   b.head<6>() = -wrench;
   Eigen::Matrix3Xd edges(3, columns);
@@ -154,12 +154,12 @@ ForceClosure force_closure(std::span<const FrictionContact> contacts, const Loca
       const Eigen::Index column = static_cast<Eigen::Index>(i) * kConeEdges + k;
       edges.col(column) = contact.normal + contact.friction * (std::cos(turn_rad) * first +
                                                                std::sin(turn_rad) * second);
-      A.col(column).head<6>() = wrench_of(edges.col(column), contact.at, frame);
-      if (contact.preload_N) A(clamp_row, column) = 1.0;
+      a.col(column).head<6>() = wrench_of(edges.col(column), contact.at, frame);
+      if (contact.preload_N) a(clamp_row, column) = 1.0;
     }
     if (contact.preload_N) b[clamp_row++] = *contact.preload_N;
   }
-  const NonNegative found = non_negative_least_squares(A, b);
+  const NonNegative found = non_negative_least_squares(a, b);
   ForceClosure result;
   result.residual_N = found.residual;
   result.holds = found.residual <= kBalanced * b.norm();

@@ -182,7 +182,7 @@ void RuleChecker::Impl::judge(RuleResult& result, RuleReport& report) {
   result.severity = result.rule.severity;
   const auto change = design.overrides.find(result.rule.id);
   if (change != design.overrides.end()) {
-    result.override_ = change->second;
+    result.overridden_by = change->second;
     result.is_off = change->second.severity == "off";
     result.severity = rule_severity_from(change->second.severity).value_or(result.severity);
   }

@@ -103,7 +103,7 @@ std::vector<FactTable> slot_facts() {
             {"plate", "instance"},
             {"slot", "its slot whose middle is nearest"},
             {"off_mm", "from the hole's axis to that, seen from above"}},
-           kFromParts | kFromDesign | kFromTolerance,
+           FromParts | FromDesign | FromTolerance,
            plate_slots},
           {"slot_fits",
            "Parts with flat sides that stand in plain slots or T-slots: T-nuts, T-bolts, keys.",
@@ -127,7 +127,7 @@ std::vector<FactTable> slot_facts() {
             {"dx", "into the slot; unit"},
             {"dy", ""},
             {"dz", ""}},
-           kFromParts,
+           FromParts,
            slot_fits}};
 }
 

@@ -176,7 +176,7 @@ FactRows straps(FactSource& source) {
   return rows;
 }
 
-constexpr unsigned kFromFixture = kFromParts | kFromDesign | kFromTolerance;
+constexpr unsigned kFromFixture = FromParts | FromDesign | FromTolerance;
 
 }  // namespace
 
@@ -219,7 +219,7 @@ std::vector<FactTable> stated_facts() {
         {"quantity", "ends in its unit"},
         {"value", "as stated"},
         {"reason", "by what"}},
-       kFromDesign,
+       FromDesign,
        stated_rows},
       {"straps",
        "Clamps that press down with one end, stand with the other and are pulled by a screw in "

@@ -40,13 +40,14 @@ FacetedSolid cylinder_solid(double radius_mm, double length_mm) {
                   radius_mm * (1.0 - std::cos(std::numbers::pi / kSegments)),
                   2.0 * std::numbers::pi * radius_mm * length_mm, 0}};
   for (const std::uint32_t end : {0U, 1U}) {
+    const std::uint32_t first = end * kSegments;
     Edge rim;
     rim.faces = {end, 2};
     rim.convexity = Convexity::Convex;
     rim.curve = CurveKind::Circle;
     rim.closed = true;
     rim.length_mm = 2.0 * std::numbers::pi * radius_mm;
-    rim.start = rim.end = solid.vertices[end * kSegments];
+    rim.start = rim.end = solid.vertices[first];
     rim.center = end == 0 ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(length_mm * up);
     rim.axis = up;
     rim.radius_mm = radius_mm;

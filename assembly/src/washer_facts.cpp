@@ -97,7 +97,7 @@ std::vector<FactTable> washer_facts() {
            {{"instance", "washer or seat"},
             {"side", "ball or cone"},
             {"partner", "the one that it turns in, or that turns in it; NULL where there is none"}},
-           kFromParts | kFromDesign | kFromTolerance,
+           FromParts | FromDesign | FromTolerance,
            spherical_washers}};
 }
 

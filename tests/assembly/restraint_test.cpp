@@ -31,16 +31,16 @@ std::vector<LocatingPoint> locators() {
 
 /// The least residual over all sets of columns whose own solution is not negative: the optimum is
 /// one of them.
-double best_of_all_subsets(const MatrixXd& A, const VectorXd& b) {
+double best_of_all_subsets(const MatrixXd& a, const VectorXd& b) {
   double best = b.norm();
-  for (unsigned set = 1; set < (1U << static_cast<unsigned>(A.cols())); ++set) {
+  for (unsigned set = 1; set < (1U << static_cast<unsigned>(a.cols())); ++set) {
     std::vector<Eigen::Index> columns;
-    for (Eigen::Index i = 0; i < A.cols(); ++i) {
+    for (Eigen::Index i = 0; i < a.cols(); ++i) {
       if (((set >> static_cast<unsigned>(i)) & 1U) != 0U) columns.push_back(i);
     }
-    MatrixXd part(A.rows(), static_cast<Eigen::Index>(columns.size()));
+    MatrixXd part(a.rows(), static_cast<Eigen::Index>(columns.size()));
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      part.col(static_cast<Eigen::Index>(i)) = A.col(columns[i]);
+      part.col(static_cast<Eigen::Index>(i)) = a.col(columns[i]);
     }
     const VectorXd x = part.completeOrthogonalDecomposition().solve(b);
     if (x.minCoeff() >= 0.0) best = std::min(best, (part * x - b).norm());
@@ -57,23 +57,23 @@ TEST_CASE("non-negative least squares finds what trying all sets of columns find
   std::normal_distribution<double> normal;
   const Eigen::Index rows = 3 + static_cast<Eigen::Index>(seed % 4);
   const Eigen::Index columns = 2 + static_cast<Eigen::Index>(seed % 8);
-  MatrixXd A(rows, columns);
+  MatrixXd a(rows, columns);
   VectorXd b(rows);
-  for (double& value : A.reshaped()) value = normal(random);
+  for (double& value : a.reshaped()) value = normal(random);
   for (double& value : b) value = normal(random);
-  const auto found = dowel::non_negative_least_squares(A, b);
+  const auto found = dowel::non_negative_least_squares(a, b);
   CHECK(found.has_converged);
   CHECK(found.x.minCoeff() >= 0.0);
-  CHECK(found.residual == Approx(best_of_all_subsets(A, b)).margin(1e-9));
-  CHECK((A * found.x - b).norm() == Approx(found.residual).margin(1e-12));
+  CHECK(found.residual == Approx(best_of_all_subsets(a, b)).margin(1e-9));
+  CHECK((a * found.x - b).norm() == Approx(found.residual).margin(1e-12));
 }
 
 TEST_CASE("non-negative least squares takes equal and zero columns", "[degenerate]") {
-  MatrixXd A(2, 4);
-  A << 1, 1, 0, -1, 0, 0, 0, 0;
-  const auto found = dowel::non_negative_least_squares(A, Eigen::Vector2d(2, 0));
+  MatrixXd a(2, 4);
+  a << 1, 1, 0, -1, 0, 0, 0, 0;
+  const auto found = dowel::non_negative_least_squares(a, Eigen::Vector2d(2, 0));
   CHECK(found.residual == Approx(0.0).margin(1e-12));
-  CHECK(dowel::non_negative_least_squares(A, Eigen::Vector2d(0, 1)).residual ==
+  CHECK(dowel::non_negative_least_squares(a, Eigen::Vector2d(0, 1)).residual ==
         Approx(1.0).margin(1e-12));
 }
 

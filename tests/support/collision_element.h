@@ -33,7 +33,7 @@ inline Obb box_of(const FacetedSolid& solid) {
 
 inline std::shared_ptr<const CollisionElement> collision_element(FacetedSolid solid) {
   const Obb obb = box_of(solid);
-  const auto shared = std::make_shared<const FacetedSolid>(std::move(solid));
+  auto shared = std::make_shared<const FacetedSolid>(std::move(solid));
   return std::make_shared<const CollisionElement>(obb, [shared] { return shared; });
 }
 

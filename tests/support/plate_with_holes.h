@@ -196,6 +196,7 @@ class PlateBuilder {
     }
     std::sort(found.begin(), found.end());
     std::vector<std::size_t> result;
+    result.reserve(found.size());
     for (const auto& [along, i] : found) result.push_back(i);
     return result;
   }

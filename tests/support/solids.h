@@ -55,6 +55,8 @@ inline FacetedSolid prism(const std::vector<Eigen::Vector2d>& polygon, double he
   detail::Builder builder;
   std::vector<std::uint32_t> low;
   std::vector<std::uint32_t> high;
+  low.reserve(polygon.size());
+  high.reserve(polygon.size());
   for (const Eigen::Vector2d& p : polygon) low.push_back(builder.vertex({p.x(), p.y(), 0.0}));
   for (const Eigen::Vector2d& p : polygon) {
     high.push_back(builder.vertex({p.x(), p.y(), height_mm}));

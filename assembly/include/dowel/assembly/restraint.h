@@ -17,16 +17,16 @@ using Wrench = Eigen::Matrix<double, 6, 1>;
 Wrench wrench_of(const Eigen::Vector3d& force_N, const Eigen::Vector3d& at,
                  const LocatingFrame& frame);
 
-/// Non-negative least squares: x >= 0 with the smallest |A x - b|.
+/// Non-negative least squares: x >= 0 with the smallest |a x - b|.
 struct NonNegative {
   Eigen::VectorXd x;
-  double residual = 0.0;  ///< |A x - b|
+  double residual = 0.0;  ///< |a x - b|
   bool has_converged = true;
 };
 
 /// Source: Lawson and Hanson, "Solving Least Squares Problems", 1974, algorithm NNLS (23.10).
 /// Expects: finite entries.
-NonNegative non_negative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+NonNegative non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// Forces that the points take, without friction, when `wrench` acts on the workpiece.
 struct Seating {

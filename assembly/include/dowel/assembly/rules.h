@@ -83,7 +83,7 @@ struct RuleResult {
   Rule rule;
   RuleSeverity severity = RuleSeverity::Error;  ///< in force
   bool is_off = false;
-  std::optional<RuleOverride> override_;
+  std::optional<RuleOverride> overridden_by;
   std::optional<BrokenRule> broken;   ///< then there are no findings
   std::vector<RuleFinding> findings;  ///< one a subject, in the rule's order; passes, too
   std::vector<std::string> facts;     ///< tables that it reads
