@@ -12,8 +12,10 @@
 namespace dowel::testing {
 
 inline Pose large_fixture_plate(std::size_t plate) {
+  const std::size_t row = plate / 12;
+  const std::size_t column = plate % 12;
   return Pose::from_translation(
-      {250.0 * static_cast<double>(plate % 12), 170.0 * static_cast<double>(plate / 12), 0.0});
+      {250.0 * static_cast<double>(column), 170.0 * static_cast<double>(row), 0.0});
 }
 
 /// Where the place `height_mm` over the bottom of a plate's last hole, C5, is.

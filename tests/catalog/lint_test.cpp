@@ -17,7 +17,6 @@
 namespace {
 
 using dowel::ElementRecord;
-using dowel::FacetedSolid;
 using dowel::LintFinding;
 using dowel::testing::sound_record;
 

@@ -181,6 +181,7 @@ inline FacetedSolid oblong_plate(const Eigen::Vector3d& size, double width_mm, d
   }
   const auto ring = [&](double z) {
     std::vector<std::uint32_t> result;
+    result.reserve(loop.size());
     for (const Eigen::Vector2d& p : loop) result.push_back(b.vertex({p.x(), p.y(), z}));
     return result;
   };

@@ -89,6 +89,7 @@ inline void fill_between(Builder& builder, std::uint32_t face, bool facing_up,
                          const std::vector<std::uint32_t>& outer) {
   const std::size_t n = inner.size();
   const std::size_t m = outer.size();
+  if (n == 0 || m == 0) throw std::logic_error("a loop without vertices");
   const auto in = [&](std::size_t i) { return inner[i % n]; };
   const auto out = [&](std::size_t j) { return outer[j % m]; };
   const auto is_outside = [&](std::size_t chord, std::size_t j) {
