@@ -84,7 +84,7 @@ std::vector<Way> ways() {
   std::vector<Way> result{{"as it is", {}}};
   for (std::size_t i = 0; i < kSkipCount; ++i) {
     const auto skip = static_cast<Skip>(i);
-    result.push_back({std::string(to_string(skip)), {.without = skip}});
+    result.push_back({std::string(to_string(skip)), {.without = SkipSet(skip)}});
   }
   result.push_back({"way, memory", {.without = kRemembered}});
   result.push_back({"all of them", {.without = SkipSet::all()}, 200});

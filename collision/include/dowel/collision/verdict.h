@@ -47,7 +47,7 @@ std::string_view to_string(Skip skip);
 class SkipSet {
  public:
   constexpr SkipSet() = default;
-  constexpr SkipSet(Skip skip) : bits_(1U << static_cast<unsigned>(skip)) {}
+  constexpr explicit SkipSet(Skip skip) : bits_(1U << static_cast<unsigned>(skip)) {}
 
   static constexpr SkipSet all() {
     SkipSet result;
