@@ -169,46 +169,59 @@ TEST_CASE("a scene that remembers gives the verdicts of one that looks at all fa
   CHECK(borderline < kMoves / 1000);
 }
 
-TEST_CASE("no verdict depends on a skip", "[property]") {
-  const std::size_t left_out = GENERATE(range(std::size_t{0}, dowel::kSkipCount + 1));
-  CAPTURE(left_out);
-  const dowel::SkipSet without = left_out == dowel::kSkipCount
-                                     ? dowel::SkipSet::all()
-                                     : dowel::SkipSet(static_cast<dowel::Skip>(left_out));
-  testing::RandomGeometry random(77 + left_out);
-  const int moves = kMoves / 2;
+namespace {
+
+using Uses = std::array<std::uint64_t, dowel::kSkipCount>;
+
+/// Asks two scenes about the same moves of one kind of mover, one of them without some skips, and
+/// adds how often the other one used each. Returns how many verdicts differ near the threshold.
+int compare_without(dowel::SkipSet without, int kind, std::uint64_t seed, int moves, Uses& uses) {
+  testing::RandomGeometry random(seed);
+  Surroundings world;
+  Surroundings plain;  // has a memory of its own
+  const BodyId moving = world.scene.add(testing::collision_element(mover(kind)), Pose());
+  const BodyId plainly = plain.scene.add(testing::collision_element(mover(kind)), Pose());
   int borderline = 0;
-  std::array<std::uint64_t, dowel::kSkipCount> uses{};
-  for (const int kind : {0, 1, 2}) {
-    Surroundings world;
-    Surroundings plain;  // has a memory of its own
-    const BodyId moving = world.scene.add(testing::collision_element(mover(kind)), Pose());
-    const BodyId plainly = plain.scene.add(testing::collision_element(mover(kind)), Pose());
-    Pose pose = anchor(random);
-    for (int i = 0; i < moves / 3; ++i) {
-      pose = next(random, pose);
-      const auto plain_at = [&](double tolerance_mm) {
-        return told(plain.scene.check({&plainly, 1}, {&pose, 1},
-                                      {.tolerance_mm = tolerance_mm, .without = without}));
-      };
-      const std::string fast = told(world.scene.check({&moving, 1}, {&pose, 1}, {}));
-      const std::string slow = plain_at(kTolerance_mm);
-      if (fast == slow) continue;
-      CAPTURE(kind, i, pose.translation().transpose(), pose.rotation().coeffs().transpose(), slow);
-      // Within a twentieth of the tolerance a witness may be found from one start and not another.
-      const bool is_borderline =
-          fast == plain_at(0.95 * kTolerance_mm) || fast == plain_at(1.05 * kTolerance_mm);
-      REQUIRE((is_borderline ? slow : fast) == slow);
-      ++borderline;
-    }
-    for (std::size_t s = 0; s < dowel::kSkipCount; ++s) {
-      uses[s] += world.scene.counters().uses[s];
-      if (without.contains(static_cast<dowel::Skip>(s))) {
-        CHECK(plain.scene.counters().uses[s] == 0);
-      }
+  Pose pose = anchor(random);
+  for (int i = 0; i < moves; ++i) {
+    pose = next(random, pose);
+    const auto plain_at = [&](double tolerance_mm) {
+      return told(plain.scene.check({&plainly, 1}, {&pose, 1},
+                                    {.tolerance_mm = tolerance_mm, .without = without}));
+    };
+    const std::string fast = told(world.scene.check({&moving, 1}, {&pose, 1}, {}));
+    const std::string slow = plain_at(kTolerance_mm);
+    if (fast == slow) continue;
+    CAPTURE(i, pose.translation().transpose(), pose.rotation().coeffs().transpose(), slow);
+    // Within a twentieth of the tolerance a witness may be found from one start and not another.
+    const bool is_borderline =
+        fast == plain_at(0.95 * kTolerance_mm) || fast == plain_at(1.05 * kTolerance_mm);
+    REQUIRE((is_borderline ? slow : fast) == slow);
+    ++borderline;
+  }
+  for (std::size_t s = 0; s < dowel::kSkipCount; ++s) {
+    uses[s] += world.scene.counters().uses[s];
+    if (without.contains(static_cast<dowel::Skip>(s))) CHECK(plain.scene.counters().uses[s] == 0);
+  }
+  return borderline;
+}
+
+}  // namespace
+
+TEST_CASE("no verdict depends on a skip", "[property]") {
+  const int moves = kMoves / 6;
+  int borderline = 0;
+  Uses uses{};
+  for (std::size_t left_out = 0; left_out <= dowel::kSkipCount; ++left_out) {
+    const dowel::SkipSet without = left_out == dowel::kSkipCount
+                                       ? dowel::SkipSet::all()
+                                       : dowel::SkipSet(static_cast<dowel::Skip>(left_out));
+    for (const int kind : {0, 1, 2}) {
+      CAPTURE(left_out, kind);
+      borderline += compare_without(without, kind, 77 + left_out, moves, uses);
     }
   }
-  CHECK(borderline <= moves / 300);
+  CHECK(borderline <= moves / 10);
   for (std::size_t s = 0; s < dowel::kSkipCount; ++s) {
     CAPTURE(to_string(static_cast<dowel::Skip>(s)));
     CHECK(uses[s] > 0);
