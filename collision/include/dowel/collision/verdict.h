@@ -73,8 +73,8 @@ struct QueryOptions {
   HoleMode holes = HoleMode::Exact;
   bool first_only = false;     ///< stop at the first interference
   bool measure_depth = false;  ///< improve the lower bound of an interference's depth
-  /// Left out, to measure what a skip is worth and to test that no verdict depends on it. Sweeps and
-  /// checks of a whole scene leave out what spares work within a pair.
+  /// Left out, to measure what a skip is worth and to test that no verdict depends on it. Sweeps
+  /// and checks of a whole scene leave out what spares work within a pair.
   SkipSet without = {};
 };
 
