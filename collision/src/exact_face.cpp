@@ -139,7 +139,17 @@ std::optional<Eigen::Vector3d> place_under(const ModelTriangle& t, const Face& f
   return c + height * normal;
 }
 
+/// Whether a place of a facet's plane is within the box around its corners: what is beside no edge
+/// of a triangle without area may still be anywhere along its line.
+bool is_in_box(const ModelTriangle& t, const Eigen::Vector3d& x, double slack_mm) {
+  const Eigen::Array3d low = t.corners[0].cwiseMin(t.corners[1]).cwiseMin(t.corners[2]);
+  const Eigen::Array3d high = t.corners[0].cwiseMax(t.corners[1]).cwiseMax(t.corners[2]);
+  const double slack = slack_mm + kInsideSlack;
+  return (x.array() >= low - slack).all() && (x.array() <= high + slack).all();
+}
+
 bool is_inside(const ModelTriangle& t, const Eigen::Vector3d& x, double slack_mm) {
+  if (!is_in_box(t, x, slack_mm)) return false;
   for (std::size_t i = 0; i < 3; ++i) {
     const double length = slack_mm > 0.0 ? edge_of(t, i).norm() : 0.0;
     if (beyond_edge_by_length(t, i, x) > slack_mm * length) return false;
@@ -276,14 +286,17 @@ FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriang
 FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle& t,
                                 const Eigen::Vector3d& p, double within_squared_mm2, bool is_over) {
   const Face& face = model.face(t.face);
-  if (t.slack_mm == 0.0 || is_plane(face.surface)) {
+  // A plane's normal is exact; that of a sliver of another face is rounding.
+  if (is_plane(face.surface)) {
     const double height = t.normal.dot(p - t.corners[0]);
     const FacePoint foot{p - height * t.normal, height * height, FacePoint::Place::Face};
-    if (is_over || foot.distance_squared_mm2 > within_squared_mm2 ||
-        is_inside(t, foot.point, 0.0) ||
+    if ((is_over && is_in_box(t, foot.point, 0.0)) ||
+        foot.distance_squared_mm2 > within_squared_mm2 || is_inside(t, foot.point, 0.0) ||
         (t.slack_mm > 0.0 && is_short_of_rim(model, t, foot.point, foot.point))) {
       return foot;
     }
+  }
+  if (t.slack_mm == 0.0 || is_plane(face.surface)) {
     const TrianglePoint q = closest_on_triangle(t.corners, p);
     // On the border the two notions of inside may differ by rounding.
     if (q.region == 0) return at(q.point, p, FacePoint::Place::Face);

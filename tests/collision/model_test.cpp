@@ -135,6 +135,41 @@ TEST_CASE("a walk over a face leads to the triangle that the point is over", "[p
   CHECK(arrived > walks - walks / 100);
 }
 
+TEST_CASE("a triangle without area is near where its edge is, and not along its line") {
+  FacetedSolid solid = testing::box({10, 10, 10});
+  // The other side of the first triangle's first edge goes over the edge's middle, and a triangle
+  // without area closes the gap, as meshers do it.
+  const dowel::Triangle first = solid.triangles[0];
+  const auto has_edge = [&](const dowel::Triangle& t, std::size_t i) {
+    return t[i] == first[1] && t[(i + 1) % 3] == first[0];
+  };
+  const Eigen::Vector3d a = solid.vertices[first[0]];
+  const Eigen::Vector3d b = solid.vertices[first[1]];
+  const auto middle = static_cast<std::uint32_t>(solid.vertices.size());
+  solid.vertices.emplace_back(0.5 * (a + b));
+  const std::size_t count = solid.triangles.size();
+  for (std::size_t t = 1; t < count; ++t) {
+    const dowel::Triangle other = solid.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!has_edge(other, i)) continue;
+      solid.triangles[t] = {first[1], middle, other[(i + 2) % 3]};
+      solid.triangles.push_back({middle, first[0], other[(i + 2) % 3]});
+      solid.face_of.push_back(solid.face_of[t]);
+    }
+  }
+  solid.triangles.push_back({first[1], first[0], middle});
+  solid.face_of.push_back(solid.face_of[0]);
+  REQUIRE(solid.triangles.size() == count + 2);
+  const CollisionModel model = model_of(solid);
+  for (const double beyond : {-0.25, 0.25, 0.5, 1.0, 1.5, 7.0}) {
+    const Eigen::Vector3d p = a + beyond * (b - a);
+    CAPTURE(p.transpose());
+    const double outside = (p.cwiseAbs().array() - 5.0).cwiseMax(0.0).matrix().norm();
+    CHECK(model.nearest(p).distance_mm == Approx(outside).margin(1e-12));
+    CHECK(model.nearest_brute_force(p).distance_mm == Approx(outside).margin(1e-12));
+  }
+}
+
 TEST_CASE("parity of a ray agrees with the winding number", "[property]") {
   const CollisionModel model =
       model_of(testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20));
