@@ -59,15 +59,12 @@ bool still_rests(const PlacedModel& a, const PlacedModel& b, const QueryOptions&
     memory.shallow_plane = -1;
     return false;
   }
-  const auto seen_from = [](const Pose& X_WM, const Eigen::Vector3d& p_W) -> Eigen::Vector3d {
-    return X_WM.rotation().conjugate() * (p_W - X_WM.translation());
-  };
-  const auto in_B = [&](const Eigen::Vector3d& p_A) { return seen_from(b.X_WM, a.X_WM * p_A); };
-  const auto in_A = [&](const Eigen::Vector3d& p_B) { return seen_from(a.X_WM, b.X_WM * p_B); };
+  const auto in_B = [&](const Eigen::Vector3d& p_A) { return b.seen_from(a.in_world(p_A)); };
+  const auto in_A = [&](const Eigen::Vector3d& p_B) { return a.seen_from(b.in_world(p_B)); };
   if (!KeptContact(a.model, b.model, options, memory, counters, verdict).holds(in_B, in_A)) {
     return false;
   }
-  verdict.witness_W = b.X_WM * verdict.witness_W;
+  verdict.witness_W = b.in_world(verdict.witness_W);
   return true;
 }
 

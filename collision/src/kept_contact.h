@@ -26,8 +26,8 @@ class KeptContact {
   bool holds(const InB& in_B, const InA& in_A) const {
     const std::uint32_t i = memory_.contact_a;
     const std::uint32_t j = memory_.contact_b;
-    const Eigen::Vector3d place_A = memory_.contact_A;
-    const Eigen::Vector3d place_B = memory_.contact_B;
+    const Eigen::Vector3d& place_A = memory_.contact_A;
+    const Eigen::Vector3d& place_B = memory_.contact_B;
     const bool may_slide = options_.holes == HoleMode::Exact;
     const Eigen::Vector3d on_a_B = in_B(place_A);
     const Footing on_b = may_slide ? b_.walk_towards(j, on_a_B) : Footing{j};
@@ -67,11 +67,20 @@ class KeptContact {
   PairVerdict& verdict_;
 };
 
-/// A body where it is asked about.
+/// A body where it is asked about: its pose as a matrix and a vector, as its places go to the world
+/// and back at each move.
 struct PlacedModel {
   const CollisionModel& model;
-  const Pose& X_WM;
+  const Eigen::Matrix3d& rotation_WM;
+  const Eigen::Vector3d& translation_WM;
   const Obb& obb_W;
+
+  Eigen::Vector3d in_world(const Eigen::Vector3d& p_M) const {
+    return rotation_WM * p_M + translation_WM;
+  }
+  Eigen::Vector3d seen_from(const Eigen::Vector3d& p_W) const {
+    return rotation_WM.transpose() * (p_W - translation_WM);
+  }
 };
 
 /// Whether a pair that may rest does so, before anything is set up for it: the plane along which

@@ -168,8 +168,8 @@ CollisionScene::Impl::Mover& CollisionScene::Impl::mover_at(BodyId id, const Pos
     mover.element = body(id).element.get();
     mover.box_is_upright = mover.element->obb().axes == Eigen::Matrix3d::Identity();
     mover.radius_mm = mover.element->obb().half_extents_mm.norm();
-    mover.obb_W = transformed(X_WB, mover.element->obb());
-    mover.axes_are_old = false;
+    mover.obb_W = mover.element->obb();
+    mover.axes_are_old = true;
   }
   const Eigen::Vector3d center_W = X_WB * mover.element->obb().center;
   const Eigen::Vector4d turn = X_WB.rotation().coeffs() - mover.X_WB.rotation().coeffs();
@@ -221,7 +221,8 @@ void CollisionScene::Impl::find_candidates(Mover& mover, double step_mm) {
       counters.note(Skip::Silhouettes);
       continue;
     }
-    mover.candidates.push_back({BodyId{other}, other_W, -1, 0.0, {}});
+    mover.candidates.push_back(
+        {BodyId{other}, other_W, bodies[other].X_WB.rotation_matrix(), -1, 0.0, {}});
   }
   mover.way_mm = 0.0;
   mover.listed_until = room_mm;
@@ -256,8 +257,7 @@ bool CollisionScene::Impl::boxes_keep_apart(Mover& mover, Candidate& candidate,
   return true;
 }
 
-bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryOptions& options,
-                                PairVerdict& verdict) {
+bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryOptions& options) {
   ++counters.box_tests;
   if (mover.without.contains(Skip::Memory)) {
     candidate.plane = -1;
@@ -266,11 +266,22 @@ bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryO
   // What met last time is likely to meet in the same way, whatever their boxes do.
   const bool met = candidate.plane < 0 && !candidate.memory.is_empty();
   if (!met && boxes_keep_apart(mover, candidate, options.tolerance_mm)) return false;
+  BodyVerdict& found_out = verdicts.emplace_back();
+  found_out.moving = mover.id;
+  found_out.with = candidate.id;
+  if (judge_candidate(mover, candidate, met, options, found_out.pair)) return true;
+  verdicts.pop_back();
+  return false;
+}
+
+bool CollisionScene::Impl::judge_candidate(Mover& mover, Candidate& candidate, bool met,
+                                           const QueryOptions& options, PairVerdict& verdict) {
   const Body& other = bodies[candidate.id.value];
-  if (candidate.memory.may_rest() &&
-      still_rests({mover.element->model(), mover.X_WB, mover.box_W()},
-                  {other.element->model(), other.X_WB, candidate.obb_W}, options, candidate.memory,
-                  counters, verdict)) {
+  if (candidate.memory.may_rest() && still_rests({mover.element->model(), mover.rotation_WB,
+                                                  mover.X_WB.translation(), mover.box_W()},
+                                                 {other.element->model(), candidate.rotation_WB,
+                                                  other.X_WB.translation(), candidate.obb_W},
+                                                 options, candidate.memory, counters, verdict)) {
     counters.note(Skip::Memory);
     return true;
   }
@@ -303,18 +314,20 @@ bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryO
       clear_until = 0.0;  // who moves along may be another one next time
       continue;
     }
-    PairVerdict met;
-    const bool is_clear = knows_way && mover.way_mm < candidate.clear_until;
-    if (is_clear) counters.note(Skip::Way);
-    if (is_clear || !meet(mover, candidate, options, met)) {
+    if (knows_way && mover.way_mm < candidate.clear_until) {
+      counters.note(Skip::Way);
+      clear_until = std::min(clear_until, candidate.clear_until);
+      continue;
+    }
+    if (!meet(mover, candidate, options)) {
       clear_until = std::min(clear_until, candidate.clear_until);
       continue;
     }
     clear_until = 0.0;
-    const bool is_last = options.first_only && met.verdict == Verdict::Interference;
-    if (is_last) verdicts.clear();
-    verdicts.push_back({mover.id, candidate.id, met});
-    if (is_last) return false;
+    if (options.first_only && verdicts.back().pair.verdict == Verdict::Interference) {
+      verdicts.erase(verdicts.begin(), verdicts.end() - 1);
+      return false;
+    }
   }
   mover.clear_until = clear_until;
   return true;

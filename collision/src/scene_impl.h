@@ -44,6 +44,7 @@ struct CollisionScene::Impl {
   struct Candidate {
     BodyId id;
     Obb obb_W;
+    Eigen::Matrix3d rotation_WB;
     std::int8_t plane = -1;    // that kept their boxes apart last
     double clear_until = 0.0;  // the two are clear while the mover's way is below this
     PairMemory memory;
@@ -58,7 +59,8 @@ struct CollisionScene::Impl {
     const CollisionElement* element = nullptr;
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
-    Obb obb_W;  // but for the axes while `axes_are_old`
+    Obb obb_W;                    // but for the axes while `axes_are_old`
+    Eigen::Matrix3d rotation_WB;  // but while `axes_are_old`
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
@@ -71,8 +73,12 @@ struct CollisionScene::Impl {
     /// The box at the pose asked about. Most moves do not need its axes.
     const Obb& box_W() {
       if (axes_are_old) {
-        obb_W.axes = X_WB.rotation_matrix();
-        if (!box_is_upright) obb_W.axes = obb_W.axes * element->obb().axes;
+        rotation_WB = X_WB.rotation_matrix();
+        if (box_is_upright) {
+          obb_W.axes = rotation_WB;
+        } else {
+          obb_W.axes = rotation_WB * element->obb().axes;
+        }
         axes_are_old = false;
       }
       return obb_W;
@@ -133,9 +139,14 @@ struct CollisionScene::Impl {
   /// candidate says for how long.
   bool boxes_keep_apart(Mover& mover, Candidate& candidate, double tolerance_mm);
 
-  /// Whether a mover and one of its candidates are in contact or worse: then `verdict`, its witness
-  /// in the world. Else the candidate says for how long they are clear. Expects: a new `verdict`.
-  bool meet(Mover& mover, Candidate& candidate, const QueryOptions& options, PairVerdict& verdict);
+  /// Whether a mover and one of its candidates are in contact or worse: then the last of `verdicts`
+  /// says how. Else the candidate says for how long they are clear.
+  bool meet(Mover& mover, Candidate& candidate, const QueryOptions& options);
+
+  /// The same in detail: then `verdict`, which is new, says how. `met`: they did so last time, and
+  /// their boxes were not asked yet.
+  bool judge_candidate(Mover& mover, Candidate& candidate, bool met, const QueryOptions& options,
+                       PairVerdict& verdict);
 
   /// Appends the verdicts of one mover, which may move along with others, to `verdicts`; false once
   /// `first_only` ends the query.

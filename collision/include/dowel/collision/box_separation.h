@@ -27,8 +27,9 @@ BoxSeparation separate(const Obb& a, const Obb& b, double margin_mm, int hint = 
 
 /// Distance of the boxes along the normal of face `i` of `a`; negative where they overlap along it.
 inline double gap_along_face(const Obb& a, int i, const Obb& b) {
-  const Eigen::Vector3d normal = a.axes.col(i);
-  const double reach_b = (b.axes.transpose() * normal).cwiseAbs().dot(b.half_extents_mm);
+  const auto normal = a.axes.col(i);  // not a copy, which would be read before it is written
+  double reach_b = 0.0;
+  for (int k = 0; k < 3; ++k) reach_b += std::abs(normal.dot(b.axes.col(k))) * b.half_extents_mm[k];
   return std::abs(normal.dot(b.center - a.center)) - a.half_extents_mm[i] - reach_b;
 }
 
