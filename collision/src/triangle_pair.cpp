@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "dowel/kernel/tolerance.h"
 #include "exact_face.h"
 
 namespace dowel {
 namespace {
+
+/// What rounding may put between the ends of a crossing and the two triangles: more than that of
+/// coordinates, less than any tolerance.
+constexpr double kSamePlace_mm = 1.0e-7;
+static_assert(kSamePlace_mm * 10 <= kMinTolerance_mm);
 
 /// Nearest points of segments p0-p1 and q0-q1.
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.9.
@@ -76,9 +82,18 @@ std::optional<Segment> crossing_segment(const Corners& a, const Eigen::Vector3d&
   const std::array<Eigen::Vector3d, 4> ends{section_a->start, section_a->end, section_b->start,
                                             section_b->end};
   const auto end_at = [&](double value) {
-    return ends[static_cast<std::size_t>(std::ranges::find(at, value) - at.begin())];
+    return static_cast<std::size_t>(std::ranges::find(at, value) - at.begin());
   };
-  return Segment{end_at(low), end_at(high)};
+  // Where the planes are one but for rounding, or either section is a point, the sections lie on no
+  // common line: an end of one is then anywhere beside the other triangle.
+  const auto is_on_both = [&](std::size_t end) {
+    const Eigen::Vector3d on_other = closest_on_triangle(end < 2 ? b : a, ends[end]).point;
+    return (on_other - ends[end]).squaredNorm() <= kSamePlace_mm * kSamePlace_mm;
+  };
+  const std::size_t first = end_at(low);
+  const std::size_t last = end_at(high);
+  if (!is_on_both(first) || !is_on_both(last)) return std::nullopt;
+  return Segment{ends[first], ends[last]};
 }
 
 ClosestPair closest_points(const Corners& a, const Eigen::Vector3d& normal_a, const Corners& b,

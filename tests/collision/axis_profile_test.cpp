@@ -171,35 +171,3 @@ TEST_CASE("of a tilted shaft a fit says no more room than there is, nor a contac
   CHECK(met > 1000);
   CHECK(apart > 1000);
 }
-
-TEST_CASE("a pin tilts in its bore until it jams, by the exact cylinders", "[property]") {
-  const double clearance = 0.05;
-  const double length = 20.0;
-  dowel::CollisionScene scene;
-  scene.add(
-      testing::collision_element(testing::plate_with_holes({60, 60, length}, {{0, 0, 6.0}}, 16)),
-      Pose());
-  const auto pin =
-      scene.add(testing::collision_element(testing::cylinder(6.0 - clearance, 60, 18)), Pose());
-  testing::RandomGeometry random(42);
-  const double t = 0.001;
-  for (int i = 0; i < 2000; ++i) {
-    const double angle = random.uniform(0.0, 2.5) * 2.0 * clearance / length;
-    // A cylinder of radius r tilted about the bore's middle: at each mouth the elliptic section
-    // r / cos(angle) is off by half the length times tan(angle).
-    const double play = 6.0 - (6.0 - clearance) / std::cos(angle) - 0.5 * length * std::tan(angle);
-    if (std::abs(play - t) < 0.3 * t || std::abs(play + t) < 0.3 * t) continue;
-    const double turn = random.uniform(0.0, 7.0);
-    const Eigen::Vector3d about(std::cos(turn), std::sin(turn), 0.0);
-    const std::array<Pose, 1> poses{Pose::about_axis({0, 0, 0.5 * length}, about, angle) *
-                                    Pose::from_translation({0, 0, -20})};
-    const std::array<dowel::BodyId, 1> moving{pin};
-    const auto verdict = worst(scene.check(moving, poses, {.tolerance_mm = t}));
-    CAPTURE(i, angle, play);
-    if (play > t) REQUIRE(verdict == dowel::Verdict::Clear);
-    if (play < t && play > -t) REQUIRE(verdict == dowel::Verdict::Contact);
-    // The ball between a corner and the bore's wall is smaller than the miss: a corner of about
-    // half a right angle each side leaves it room from 2.5 times on.
-    if (play < -2.5 * t) REQUIRE(verdict == dowel::Verdict::Interference);
-  }
-}
