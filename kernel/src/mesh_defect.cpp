@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numeric>
 
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/check.h"
+#include "dowel/kernel/tolerance.h"
+#include "inward.h"
 #include "mesh_edges.h"
 #include "solid_values.h"
 
@@ -85,6 +88,35 @@ std::optional<std::string> find_inward_solid(const FacetedSolid& solid) {
   return std::nullopt;
 }
 
+std::optional<std::string> find_inward_part(const FacetedSolid& solid) {
+  if (const auto triangle = find_inward_component(solid)) {
+    return "the component of triangle " + std::to_string(*triangle) +
+           " encloses a negative volume and is no cavity: its triangles do not face outward";
+  }
+  const std::vector<double> agreement = agreement_of_faces(solid);
+  for (std::size_t i = 0; i < agreement.size(); ++i) {
+    if (agreement[i] >= 0.0) continue;
+    return "face " + std::to_string(i) + " has its outside where its triangles have their inside";
+  }
+  return std::nullopt;
+}
+
+/// A triangle with a corner far off the face that it stands for.
+std::optional<std::string> find_stray_triangle(const FacetedSolid& solid) {
+  for (std::size_t i = 0; i < solid.triangles.size(); ++i) {
+    const Face& face = solid.faces[solid.face_of[i]];
+    if (std::holds_alternative<OtherSurface>(face.surface)) continue;
+    for (const std::uint32_t v : solid.triangles[i]) {
+      const double off_mm = std::abs(signed_distance_mm(face.surface, solid.vertices[v]));
+      if (off_mm <= face.facet_error_mm + kStrayFacet_mm) continue;
+      return "vertex " + std::to_string(v) + " of triangle " + std::to_string(i) + " is " +
+             std::to_string(off_mm) + " mm off the surface of its face " +
+             std::to_string(solid.face_of[i]);
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> find_defect(const FacetedSolid& solid) {
@@ -96,7 +128,9 @@ std::optional<std::string> find_defect(const FacetedSolid& solid) {
   if (auto defect = find_bad_value(solid)) return defect;
   if (auto defect = find_double_vertex(solid)) return defect;
   if (auto defect = find_bad_mesh_edge(solid)) return defect;
-  return find_inward_solid(solid);
+  if (auto defect = find_inward_solid(solid)) return defect;
+  if (auto defect = find_inward_part(solid)) return defect;
+  return find_stray_triangle(solid);
 }
 
 void weld(FacetedSolid& solid) {

@@ -2,11 +2,14 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "disjoint_sets.h"
 #include "dowel/kernel/box.h"
 #include "dowel/kernel/mesh_defect.h"
+#include "dowel/kernel/tolerance.h"
+#include "inward.h"
 #include "mesh_edges.h"
 
 namespace dowel {
@@ -113,21 +116,29 @@ void choose_components_to_turn(const FacetedSolid& solid, std::vector<Component>
   }
 }
 
-/// Makes the exact faces agree with their facets where these turned. Returns which faces changed.
-std::vector<bool> align_faces(FacetedSolid& solid, const std::vector<bool>& is_turned) {
-  std::vector<bool> has_turned(solid.faces.size(), false);
-  std::vector<double> agreement(solid.faces.size(), 0.0);
+}  // namespace
+
+std::vector<double> agreement_of_faces(const FacetedSolid& solid) {
+  std::vector<double> result(solid.faces.size(), 0.0);
   for (std::uint32_t i = 0; i < solid.triangles.size(); ++i) {
     const Face& face = solid.faces[solid.face_of[i]];
-    if (std::holds_alternative<OtherSurface>(face.surface)) {
-      if (is_turned[i]) has_turned[solid.face_of[i]] = true;
-      continue;
-    }
+    if (std::holds_alternative<OtherSurface>(face.surface)) continue;
     const std::array<Eigen::Vector3d, 3> corners = solid.corners(i);
     const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const Eigen::Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
     const double cosine = normal.dot(distance_gradient(face.surface, center));
-    agreement[solid.face_of[i]] += face.reversed ? -cosine : cosine;
+    result[solid.face_of[i]] += face.reversed ? -cosine : cosine;
+  }
+  return result;
+}
+
+namespace {
+
+/// Makes the exact faces agree with their facets where these turned. Returns which faces changed.
+std::vector<bool> align_faces(FacetedSolid& solid, const std::vector<bool>& is_turned) {
+  std::vector<bool> has_turned(solid.faces.size(), false);
+  const std::vector<double> agreement = agreement_of_faces(solid);
+  for (std::uint32_t i = 0; i < solid.triangles.size(); ++i) {
     if (is_turned[i]) has_turned[solid.face_of[i]] = true;
   }
   for (std::size_t f = 0; f < solid.faces.size(); ++f) {
@@ -156,6 +167,19 @@ Convexity turned(Convexity convexity) {
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> find_inward_component(const FacetedSolid& solid) {
+  const std::vector<Component> components = components_of(solid);
+  for (const Component& component : components) {
+    const double size_mm = component.bounds.size().norm();
+    if (component.volume_mm3 >= -kRounding * size_mm * size_mm * size_mm) continue;
+    const bool is_inside = std::ranges::any_of(components, [&](const Component& other) {
+      return &other != &component && lies_inside(solid, component, other);
+    });
+    if (!is_inside) return component.triangles.front();
+  }
+  return std::nullopt;
+}
 
 void orient_outward(FacetedSolid& solid) {
   std::vector<Component> components = components_of(solid);

@@ -9,8 +9,9 @@ namespace dowel {
 
 /// First violation of FacetedSolid's invariants as one sentence that names the triangle, edge or
 /// vertex ("edge 12-57 is used by 1 triangle, expected 2: the mesh is open"); nothing where the
-/// solid is sound. Parameters of surfaces and edges are looked at too, and each of the solids must
-/// be closed and enclose a positive volume. O(n log n).
+/// solid is sound. Parameters of surfaces and edges are looked at too; each of the solids must be
+/// closed and enclose a positive volume, each of its components unless it is a cavity; and exact
+/// faces must be where their triangles are, with the same side outward. O(n log n).
 std::optional<std::string> find_defect(const FacetedSolid& solid);
 
 /// Welds vertices with equal coordinates, drops triangles with two equal vertices and vertices

@@ -28,6 +28,10 @@ inline constexpr double kUnitQuaternionSlack = 1.0e-6;
 /// much (a ratio): rounding of any writer, far below what shows on a part.
 inline constexpr double kStoredAxisSlack = 1.0e-6;
 
+/// A vertex may miss the exact face of its triangle by this much besides the facet error: the
+/// coarsest edges that CAD systems leave; more is another face.
+inline constexpr double kStrayFacet_mm = 0.1;
+
 /// Recognition: axes, radii, planes and rims closer than this belong to one feature, and a
 /// free-form face that misses a plane, cylinder or cone by no more is one: a micrometre, what
 /// exporters that write B-splines only leave, and a third of the tightest clearance in a fixture.
