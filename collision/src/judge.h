@@ -160,6 +160,12 @@ class Judge {
 
   bool try_witness(const std::optional<Witness>& witness);
 
+  /// Interference, by a ball in both solids. `bound_mm`: how far their faces may be off.
+  void tell_interference(double radius_mm, const Eigen::Vector3d& center_B, double bound_mm);
+
+  /// How far faces that are known by their facets alone may be off.
+  double unknown_mm() const;
+
   /// Points stored deep in each solid, against the other.
   void look_for_containment();
 

@@ -64,11 +64,8 @@ bool Judge::take_overlap(const CoreOverlap& overlap) {
   if (options_.measure_depth) {
     return try_witness(Witness{overlap.point_B, overlap.depth_a_mm, overlap.depth_b_mm});
   }
-  result_.method = Method::Exact;
-  result_.verdict = Verdict::Interference;
-  result_.depth_mm = 2.0 * std::min(overlap.depth_a_mm, overlap.depth_b_mm);
-  result_.gap_mm = 0.0;
-  result_.witness_W = overlap.point_B;
+  // Cores keep clear of what their faces may be off.
+  tell_interference(std::min(overlap.depth_a_mm, overlap.depth_b_mm), overlap.point_B, 0.0);
   return true;
 }
 
@@ -97,12 +94,7 @@ bool Judge::knows_ball() {
     memory_.ball_depth_a_mm = 0.0;
     return false;
   }
-  const double depth = std::min(memory_.ball_depth_a_mm, depth_b);
-  result_.method = Method::Exact;
-  result_.verdict = Verdict::Interference;
-  result_.depth_mm = 2.0 * depth;
-  result_.gap_mm = 0.0;
-  result_.witness_W = ball_B;
+  tell_interference(std::min(memory_.ball_depth_a_mm, depth_b), ball_B, unknown_mm());
   return true;
 }
 
@@ -170,16 +162,27 @@ bool Judge::try_start(const Eigen::Vector3d& start_B, std::uint32_t i, std::uint
 bool Judge::try_witness(const std::optional<Witness>& witness) {
   if (!witness) return false;
   const Witness found = deepen(pair_, *witness, options_.measure_depth);
-  if (result_.method == Method::Boxes) result_.method = Method::Exact;
-  result_.verdict = Verdict::Interference;
-  result_.depth_mm = 2.0 * std::min(found.depth_a_mm, found.depth_b_mm);
-  result_.gap_mm = 0.0;
-  result_.witness_W = found.point_B;
+  tell_interference(std::min(found.depth_a_mm, found.depth_b_mm), found.point_B, unknown_mm());
   memory_.ball_A = X_AB_ * found.point_B;
   memory_.ball_B = found.point_B;
   memory_.ball_depth_a_mm = found.depth_a_mm;
   memory_.ball_depth_b_mm = found.depth_b_mm;
   return true;
+}
+
+void Judge::tell_interference(double radius_mm, const Eigen::Vector3d& center_B, double bound_mm) {
+  if (result_.method == Method::Boxes) {
+    result_.method = bound_mm > 0.0 ? Method::Facets : Method::Exact;
+  }
+  result_.bound_mm = std::max(result_.bound_mm, bound_mm);
+  result_.verdict = Verdict::Interference;
+  result_.depth_mm = 2.0 * radius_mm;
+  result_.gap_mm = 0.0;
+  result_.witness_W = center_B;
+}
+
+double Judge::unknown_mm() const {
+  return pair_.a.max_unknown_mm() + pair_.b.max_unknown_mm();
 }
 
 bool Judge::is_deep_at(const Eigen::Vector3d& place_B) {

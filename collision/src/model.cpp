@@ -140,6 +140,7 @@ bool overlap(const BvhNode& node, const Aabb& box) {
 CollisionModel::CollisionModel(std::shared_ptr<const FacetedSolid> solid,
                                std::span<const std::uint32_t> hole_faces)
     : solid_(std::move(solid)) {
+  DOWEL_EXPECTS(solid_ != nullptr);
   if (const auto defect = find_defect(*solid_)) throw Error(ErrorCode::FileMalformed, *defect);
   build_tree(build_triangles(hole_faces));
   find_overhangs();
@@ -154,7 +155,10 @@ std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
   const FacetedSolid& solid = *solid_;
   const auto neighbours = triangle_neighbours(solid);
   std::vector<bool> is_hole(solid.faces.size(), false);
-  for (const std::uint32_t face : hole_faces) is_hole.at(face) = true;
+  for (const std::uint32_t face : hole_faces) {
+    DOWEL_EXPECTS(face < is_hole.size());
+    is_hole[face] = true;
+  }
 
   std::vector<Eigen::Vector3d> reaches(solid.triangles.size());
   triangles_.resize(solid.triangles.size());

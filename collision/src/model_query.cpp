@@ -35,8 +35,9 @@ double distance_squared(const BvhNode& node, const Eigen::Vector3d& p) {
   return (node.min - p).cwiseMax(p - node.max).cwiseMax(0.0).squaredNorm();
 }
 
-/// Whether a ray from `origin` crosses the triangle; nothing where it grazes an edge or the plane.
-std::optional<bool> crosses(const ModelTriangle& t, const Eigen::Vector3d& origin,
+/// 1 where a ray from `origin` leaves the material through the triangle, -1 where it enters, 0
+/// where it does neither; nothing where it grazes an edge or the plane.
+std::optional<int> crossing(const ModelTriangle& t, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& ray) {
   const Eigen::Vector3d a = t.corners[0] - origin;
   const Eigen::Vector3d b = t.corners[1] - origin;
@@ -48,11 +49,12 @@ std::optional<bool> crosses(const ModelTriangle& t, const Eigen::Vector3d& origi
   const double slack = kGrazing * scale;
   const bool positive = u > -slack && v > -slack && w > -slack;
   const bool negative = u < slack && v < slack && w < slack;
-  if (!positive && !negative) return false;
+  if (!positive && !negative) return 0;
   if (std::abs(u) <= slack || std::abs(v) <= slack || std::abs(w) <= slack) return std::nullopt;
   const double along = (u * a + v * b + w * c).dot(ray) / (u + v + w);
   if (std::abs(along) <= kGrazing * std::sqrt(scale)) return std::nullopt;
-  return along > 0.0;
+  if (along <= 0.0) return 0;
+  return u + v + w < 0.0 ? 1 : -1;
 }
 
 bool ray_meets(const BvhNode& node, const Eigen::Vector3d& origin, const Eigen::Vector3d& inverse) {
@@ -63,13 +65,13 @@ bool ray_meets(const BvhNode& node, const Eigen::Vector3d& origin, const Eigen::
   return leave >= 0.0 && enter <= leave * (1.0 + 1e-12) + 1e-12;
 }
 
-/// Crossings of a ray with the facets; nothing where it grazes one.
-std::optional<int> count_crossings(const CollisionModel& model, const Eigen::Vector3d& origin,
-                                   const Eigen::Vector3d& ray) {
+/// How often a ray leaves the material more than it enters it; nothing where it grazes a facet.
+std::optional<int> exits(const CollisionModel& model, const Eigen::Vector3d& origin,
+                         const Eigen::Vector3d& ray) {
   const Eigen::Vector3d inverse = ray.cwiseInverse();
   std::array<std::uint32_t, kStackSize> stack{};
   std::size_t depth = 1;
-  int crossings = 0;
+  int sum = 0;
   while (depth > 0) {
     const BvhNode& node = model.nodes()[stack[--depth]];
     if (!ray_meets(node, origin, inverse)) continue;
@@ -79,12 +81,12 @@ std::optional<int> count_crossings(const CollisionModel& model, const Eigen::Vec
       continue;
     }
     for (const ModelTriangle& t : model.triangles().subspan(node.first, node.count)) {
-      const std::optional<bool> crossing = crosses(t, origin, ray);
-      if (!crossing) return std::nullopt;
-      crossings += *crossing ? 1 : 0;
+      const std::optional<int> through = crossing(t, origin, ray);
+      if (!through) return std::nullopt;
+      sum += *through;
     }
   }
-  return crossings;
+  return sum;
 }
 
 constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
@@ -209,8 +211,8 @@ NearestPoint CollisionModel::nearest_brute_force(const Eigen::Vector3d& point) c
 
 bool CollisionModel::facets_contain(const Eigen::Vector3d& point) const {
   for (const auto& ray : kRays) {
-    const auto crossings = count_crossings(*this, point, Eigen::Vector3d(ray.data()));
-    if (crossings) return *crossings % 2 == 1;
+    const auto sum = exits(*this, point, Eigen::Vector3d(ray.data()));
+    if (sum) return *sum > 0;
   }
   return winding_number(point) > 0.5;
 }

@@ -7,6 +7,7 @@
 
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/layered_projection.h"
+#include "dowel/collision/model.h"
 #include "dowel/collision/silhouette.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
@@ -28,6 +29,26 @@ constexpr double kSizesOfRoom = 0.75;
 /// Added to each step of a way: rounding of poses 100 m from the origin.
 constexpr double kWayRounding_mm = 1.0e-10;
 
+bool is_box(const Obb& obb) {
+  // Written so that NaN fails.
+  const Eigen::Matrix3d skew = obb.axes.transpose() * obb.axes - Eigen::Matrix3d::Identity();
+  return obb.center.allFinite() && obb.half_extents_mm.allFinite() &&
+         obb.half_extents_mm.minCoeff() >= 0.0 && skew.cwiseAbs().maxCoeff() <= kStoredAxisSlack;
+}
+
+/// A part that its box does not hold would go unseen where it sticks out.
+void expect_inside(const Obb& obb, const CollisionModel& model) {
+  const double slack_mm = kBoxSlack_mm + kBoxSlackRatio * obb.half_extents_mm.norm();
+  for (const ModelTriangle& triangle : model.triangles()) {
+    for (const Eigen::Vector3d& corner : triangle.corners) {
+      const double outside_mm = obb.face_distance_mm(corner);
+      if (outside_mm <= slack_mm) continue;
+      throw Error(ErrorCode::FileMalformed, "a vertex is " + std::to_string(outside_mm) +
+                                                " mm outside the box of its element");
+    }
+  }
+}
+
 }  // namespace
 
 struct CollisionElement::State {
@@ -41,7 +62,7 @@ struct CollisionElement::State {
 CollisionElement::CollisionElement(const Obb& obb, Loader load,
                                    std::vector<std::uint32_t> hole_faces)
     : obb_(obb), state_(std::make_unique<State>()) {
-  DOWEL_EXPECTS(load != nullptr);
+  DOWEL_EXPECTS(load != nullptr && is_box(obb));
   state_->load = std::move(load);
   state_->hole_faces = std::move(hole_faces);
 }
@@ -56,7 +77,9 @@ const CollisionModel& CollisionElement::model() const {
   if (const CollisionModel* model = state_->ready.load(std::memory_order_acquire)) return *model;
   const std::scoped_lock lock(state_->mutex);
   if (!state_->model) {
-    state_->model = std::make_unique<const CollisionModel>(state_->load(), state_->hole_faces);
+    auto model = std::make_unique<const CollisionModel>(state_->load(), state_->hole_faces);
+    expect_inside(obb_, *model);
+    state_->model = std::move(model);
     state_->ready.store(state_->model.get(), std::memory_order_release);
   }
   return *state_->model;
@@ -340,7 +363,8 @@ void CollisionScene::Impl::forget_all_but(BodyId id) {
 namespace {
 
 void expect_valid(const QueryOptions& options) {
-  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm && options.tolerance_mm < 1e3);
+  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm &&
+                options.tolerance_mm <= kMaxTolerance_mm);
 }
 
 }  // namespace

@@ -291,7 +291,8 @@ class CollisionScene::Impl::PairSweep {
 SweepResult CollisionScene::sweep(std::span<const BodyId> moving, std::span<const Pose> X_UB,
                                   const Pose& from, const Pose& to, const QueryOptions& options) {
   DOWEL_EXPECTS(moving.size() == X_UB.size());
-  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm);
+  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm &&
+                options.tolerance_mm <= kMaxTolerance_mm);
   SweepResult result;
   std::vector<BodyVerdict> touched;
   const Impl::MovingMark mark(*impl_, moving);

@@ -122,7 +122,7 @@ class CollisionModel {
   }
 
   /// Nearest place of the boundary. Inside or outside follows from the side of the nearest face, or
-  /// from the edge's shape; at a corner from the parity of a ray.
+  /// from the edge's shape; at a corner from what a ray leaves and enters.
   NearestPoint nearest(const Eigen::Vector3d& point) const;
 
   /// The same where it is nearer than `radius_mm`; nothing elsewhere. Cheap for small radii.
@@ -136,8 +136,8 @@ class CollisionModel {
   /// The same by looking at every triangle. Reference for tests.
   NearestPoint nearest_brute_force(const Eigen::Vector3d& point) const;
 
-  /// True where `point` lies inside the facets: parity of a ray in general position; where eight
-  /// rays in a row hit edges, the winding number.
+  /// True where `point` lies inside the facets: a ray in general position leaves the material more
+  /// often than it enters it; where eight rays graze an edge the winding number decides.
   bool facets_contain(const Eigen::Vector3d& point) const;
 
   /// Winding number of the facets about `point`, 1 inside, 0 outside; O(n).

@@ -24,16 +24,17 @@ class CollisionElement {
  public:
   using Loader = std::function<std::shared_ptr<const FacetedSolid>()>;
 
-  /// `obb`: contains the exact solid, in the element's frame. `load` is called at most once.
-  /// `hole_faces`: faces that make up the walls of holes, for HoleMode::Paper; may be empty.
+  /// `obb`: contains the exact solid, in the element's frame; finite, with orthonormal axes. `load`
+  /// is called until it once returns a solid. `hole_faces`: faces that make up the walls of holes,
+  /// for HoleMode::Paper; may be empty.
   CollisionElement(const Obb& obb, Loader load, std::vector<std::uint32_t> hole_faces = {});
   ~CollisionElement();
 
   const Obb& obb() const noexcept { return obb_; }
   bool is_loaded() const noexcept;
 
-  /// Builds on first use. What the loader throws passes through; a solid with a defect is
-  /// Error{FileMalformed}.
+  /// Builds on first use. What the loader throws passes through; a solid with a defect, or one
+  /// that its box does not contain, is Error{FileMalformed}.
   const CollisionModel& model() const;
 
  private:
