@@ -95,7 +95,7 @@ TEST_CASE("a fit is free exactly where the cylinders leave room", "[property]") 
   const double t = 0.001;
   int free = 0;
   int blocked = 0;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < 100'000; ++i) {
     const double clearance = std::pow(10.0, random.uniform(-3.0, 0.0));
     const double offset = random.uniform(0.0, 1.5) * clearance;
     const double radius = 6.0 - clearance;

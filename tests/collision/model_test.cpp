@@ -1,5 +1,8 @@
 #include "dowel/collision/model.h"
 
+#include <array>
+#include <cmath>
+
 #include <catch2/catch.hpp>
 
 #include "dowel/kernel/error.h"
@@ -170,21 +173,56 @@ TEST_CASE("a triangle without area is near where its edge is, and not along its 
   }
 }
 
-TEST_CASE("parity of a ray agrees with the winding number", "[property]") {
+TEST_CASE("the nearest place within a radius is the nearest one where that is near enough",
+          "[property]") {
   const CollisionModel model =
       model_of(testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 20));
+  testing::RandomGeometry random(9);
+  int found = 0;
+  for (int i = 0; i < kNearest; ++i) {
+    const Eigen::Vector3d p = random.point(35);
+    const double radius_mm = std::pow(10.0, random.uniform(-2.0, 1.3));
+    const NearestPoint all = model.nearest(p);
+    const auto within = model.nearest_within(p, radius_mm);
+    REQUIRE(within.has_value() == (all.distance_mm < radius_mm));
+    if (!within) continue;
+    REQUIRE(within->distance_mm == all.distance_mm);
+    REQUIRE(within->inside == all.inside);
+    ++found;
+  }
+  CHECK(found > kNearest / 10);
+  CHECK(found < kNearest * 9 / 10);
+}
+
+TEST_CASE("what a ray leaves and enters agrees with the winding number", "[property]") {
+  const FacetedSolid plate =
+      testing::plate_with_holes({60, 40, 20}, testing::hole_grid(3, 2, 18, 5.0), 12);
+  // Two solids of one element, partly in each other, and a part with a cavity.
+  const FacetedSolid block = testing::box({24, 20, 16}, {5, 4, 12});
+  const std::array<FacetedSolid, 3> solids{
+      plate, testing::merged(plate, block),
+      testing::hollowed(testing::box({50, 50, 50}), testing::cylinder(12, 18, 16))};
+  const FacetedSolid& solid = solids.at(GENERATE(0U, 1U, 2U));
+  const CollisionModel model = model_of(solid);
   testing::RandomGeometry random(8);
   int inside = 0;
-  for (int i = 0; i < 5000; ++i) {
+  int judged = 0;
+  for (int i = 0; i < kNearest / 2; ++i) {
     Eigen::Vector3d p = random.point(32);
     if (i % 4 == 0)
       p = {std::round(p.x()), std::round(p.y()), std::round(p.z())};  // on edges, planes
+    if (i % 4 == 1) {  // hardly off a corner, where this is asked
+      const auto& corners = solid.vertices;
+      p = corners[random.index(static_cast<std::uint32_t>(corners.size()))] + random.point(1e-3);
+    }
     const double winding = model.winding_number(p);
     if (std::abs(winding - std::round(winding)) > 1e-6) continue;  // on the surface
     REQUIRE(model.facets_contain(p) == (winding > 0.5));
     inside += winding > 0.5 ? 1 : 0;
+    ++judged;
   }
-  CHECK(inside > 500);
+  CHECK(judged > kNearest / 3);
+  CHECK(inside > judged / 20);
 }
 
 TEST_CASE("each component has a point deep inside it, and a cavity has none") {

@@ -1,12 +1,19 @@
 #include "dowel/collision/scene.h"
 
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <vector>
+
 #include <catch2/catch.hpp>
 
+#include "collision_element.h"
 #include "dowel/kernel/error.h"
 #include "random_geometry.h"
 #include "solids.h"
 
 using dowel::BodyId;
+using dowel::BodyVerdict;
 using dowel::CollisionElement;
 using dowel::CollisionScene;
 using dowel::FacetedSolid;
@@ -65,21 +72,128 @@ TEST_CASE("a unit is not checked against itself") {
   CHECK(scene.check_all({}).size() == 1);  // the two of the unit overlap
 }
 
-TEST_CASE("all pairs of a scene are those that each body alone finds", "[property]") {
-  testing::RandomGeometry random(21);
+namespace {
+
+#ifdef DOWEL_SANITIZED
+constexpr int kScenes = 3;
+#else
+constexpr int kScenes = 35;
+#endif
+
+/// Boxes, pins and wedges, some of them in each other.
+struct Crowd {
   CollisionScene scene;
-  const auto element = box_element({10, 8, 6});
   std::vector<BodyId> bodies;
-  for (int i = 0; i < 60; ++i) bodies.push_back(scene.add(element, random.pose(25)));
-  const auto all = scene.check_all({});
-  std::size_t found = 0;
-  for (const BodyId body : bodies) {
-    const std::array<BodyId, 1> moving{body};
-    const std::array<Pose, 1> poses{scene.pose(body)};
-    found += scene.check(moving, poses, {}).size();
+
+  explicit Crowd(testing::RandomGeometry& random) {
+    const std::array elements{testing::collision_element(testing::box({10, 8, 6})),
+                              testing::collision_element(testing::cylinder(3, 14, 12)),
+                              testing::collision_element(testing::wedge(0.5, 12, 9))};
+    for (int i = 0; i < 54; ++i) {
+      bodies.push_back(scene.add(elements[random.index(elements.size())], random.pose(25)));
+    }
   }
-  CHECK(found == 2 * all.size());
-  CHECK(all.size() > 20);
+
+  std::vector<BodyVerdict> met_by(BodyId body, const Pose& pose, bool first_only = false) {
+    const auto found = scene.check({&body, 1}, {&pose, 1}, {.first_only = first_only});
+    return {found.begin(), found.end()};
+  }
+};
+
+using Met = std::tuple<std::uint32_t, std::uint32_t, Verdict>;
+
+/// Who meets whom and how.
+std::vector<Met> summary(std::span<const BodyVerdict> verdicts) {
+  std::vector<Met> result;
+  for (const BodyVerdict& v : verdicts) {
+    result.emplace_back(v.moving.value, v.with.value, v.pair.verdict);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("all pairs of a scene are those that each body alone finds, and that facets tell",
+          "[property]") {
+  testing::RandomGeometry random(21);
+  std::size_t pairs = 0;
+  std::size_t met = 0;
+  for (int k = 0; k < kScenes; ++k) {
+    CAPTURE(k);
+    Crowd crowd(random);
+    std::vector<Met> found;
+    for (const BodyId body : crowd.bodies) {
+      const Pose pose = crowd.scene.pose(body);
+      const std::vector<Met> fast = summary(crowd.met_by(body, pose));
+      REQUIRE(fast == summary(crowd.scene.check_brute_force({&body, 1}, {&pose, 1}, {})));
+      for (const Met& m : fast) {
+        if (std::get<0>(m) < std::get<1>(m)) found.push_back(m);
+      }
+    }
+    const std::vector<Met> all = summary(crowd.scene.check_all({}));
+    REQUIRE(found == all);
+    pairs += crowd.bodies.size() * (crowd.bodies.size() - 1);  // asked from either side
+    met += all.size();
+  }
+  CHECK(pairs > 2'800U * kScenes);
+  CHECK(met > 20U * kScenes);
+}
+
+TEST_CASE("a unit meets what each of its bodies meets, but for its own", "[property]") {
+  testing::RandomGeometry random(23);
+  std::size_t met = 0;
+  std::size_t own = 0;
+  for (int k = 0; k < kScenes; ++k) {
+    Crowd crowd(random);
+    const std::array<BodyId, 3> unit{crowd.bodies[4], crowd.bodies[20], crowd.bodies[37]};
+    for (int i = 0; i < 100; ++i) {
+      const Pose X_WU = Pose::about_axis({0, 0, 0}, random.direction(), random.uniform(0, 0.05)) *
+                        Pose::from_translation(random.point(0.5));
+      std::array<Pose, 3> poses;
+      std::vector<Met> alone;
+      for (std::size_t j = 0; j < unit.size(); ++j) {
+        poses[j] = X_WU * crowd.scene.pose(unit[j]);
+        for (const Met& m : summary(crowd.met_by(unit[j], poses[j]))) {
+          const bool is_own =
+              std::ranges::any_of(unit, [&](BodyId id) { return id.value == std::get<1>(m); });
+          if (is_own) ++own;
+          if (!is_own) alone.push_back(m);
+        }
+      }
+      CAPTURE(k, i);
+      REQUIRE(summary(crowd.scene.check(unit, poses, {})) == alone);
+      met += alone.size();
+    }
+  }
+  CHECK(met > 100U * kScenes);
+  CHECK(own > 0);
+}
+
+TEST_CASE("the first hit is told where there is one, and it is one of all", "[property]") {
+  testing::RandomGeometry random(24);
+  int hits = 0;
+  int others = 0;
+  for (int k = 0; k < kScenes; ++k) {
+    Crowd crowd(random);
+    for (int i = 0; i < 300; ++i) {
+      const BodyId body = crowd.bodies[random.index(54)];
+      const Pose pose = random.pose(30);
+      const auto all = crowd.met_by(body, pose);
+      const auto first = crowd.met_by(body, pose, true);
+      CAPTURE(k, i);
+      REQUIRE(worst(first) == worst(all));
+      if (worst(all) == Verdict::Interference) {
+        ++hits;
+        REQUIRE(first.size() == 1);
+        REQUIRE(std::ranges::count(summary(all), summary(first)[0]) == 1);
+      } else {
+        ++others;
+        REQUIRE(summary(first) == summary(all));
+      }
+    }
+  }
+  CHECK(hits > 50 * kScenes);
+  CHECK(others > 20 * kScenes);
 }
 
 TEST_CASE("a removed body is no longer met and its id may come back") {

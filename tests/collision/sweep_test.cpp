@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include <catch2/catch.hpp>
 
 #include "collision_element.h"
@@ -83,6 +88,138 @@ TEST_CASE("of several obstacles the first one met is told", "[property]") {
     CHECK(result.verdict == Verdict::Interference);
     CHECK(400 * result.time_of_impact == Approx(nearest).margin(0.02));
   }
+}
+
+namespace {
+
+#ifdef DOWEL_SANITIZED
+constexpr int kShifts = 1'000;
+constexpr int kTurns = 100;
+#else
+constexpr int kShifts = 100'000;
+constexpr int kTurns = 1'000;
+#endif
+
+/// When a box at the origin's place, shifted along `way`, overlaps another one by more than
+/// `overlap_mm` on all three axes; 2: never. `reach_mm`: sum of their half sizes.
+double first_overlap(const Eigen::Vector3d& from, const Eigen::Vector3d& way,
+                     const Eigen::Vector3d& reach_mm, double overlap_mm) {
+  double enter = 0.0;
+  double leave = 1.0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double limit = reach_mm[i] - overlap_mm;
+    if (way[i] == 0.0) {
+      if (std::abs(from[i]) >= limit) return 2.0;
+      continue;
+    }
+    const double t0 = (-limit - from[i]) / way[i];
+    const double t1 = (limit - from[i]) / way[i];
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  return enter < leave ? enter : 2.0;
+}
+
+}  // namespace
+
+TEST_CASE("the time of impact of boxes is that of their intervals, however thin or fast",
+          "[property]") {
+  testing::RandomGeometry random(52);
+  constexpr double t = dowel::kDefaultTolerance_mm;
+  int hits = 0;
+  int grazes = 0;
+  int from_contact = 0;
+  for (int k = 0; k < kShifts / 100; ++k) {
+    // Sheets, bars and blocks from twice the tolerance on.
+    const auto size = [&] { return 2.5 * t * std::pow(10.0, random.uniform(0.0, 3.3)); };
+    const Eigen::Vector3d a(size(), size(), size());
+    const Eigen::Vector3d b(size(), size(), size());
+    const Pose X_WB = random.pose(5'000);
+    CollisionScene scene;
+    scene.add(collision_element(testing::box(b)), X_WB);
+    const BodyId body = scene.add(collision_element(testing::box(a)), X_WB);
+    const Eigen::Vector3d reach = 0.5 * (a + b);
+    for (int i = 0; i < 100; ++i) {
+      // Past each other, or nearly; a third begins where they touch on a face.
+      Eigen::Vector3d from = random.direction() * random.uniform(1.0, 1'000.0);
+      Eigen::Vector3d to = -from + random.point(1.0).cwiseProduct(reach);
+      const bool is_from_contact = i % 3 == 0;
+      if (is_from_contact) {
+        from = random.point(1.0).cwiseProduct(reach);
+        const auto axis = static_cast<Eigen::Index>(random.index(3));
+        from[axis] = reach[axis];
+        to = from + random.direction() * random.uniform(1.0, 1'000.0);
+        if (random.coin()) to[axis] = from[axis];
+      }
+      const Eigen::Vector3d way = to - from;
+      // Not later than when they overlap by a tenth more than the tolerance, nor earlier than by
+      // a tenth less.
+      const double late = first_overlap(from, way, reach, 1.1 * t);
+      const double early = first_overlap(from, way, reach, 0.9 * t);
+      const auto result = sweep(scene, body, X_WB * Pose::from_translation(from),
+                                X_WB * Pose::from_translation(to));
+      const double accuracy = 0.25 * t / way.norm();
+      CAPTURE(k, i, a.transpose(), b.transpose(), from.transpose(), to.transpose(), early, late);
+      if (early > 1.0) REQUIRE(result.verdict != Verdict::Interference);
+      if (late <= 1.0) {
+        REQUIRE(result.verdict == Verdict::Interference);
+        REQUIRE(result.time_of_impact <= late + accuracy);
+      }
+      if (result.verdict == Verdict::Interference) {
+        REQUIRE(result.time_of_impact >= early - accuracy);
+        const double free = (X_WB.inverse() * result.free_pose).translation().x();
+        const double hit = from.x() + result.time_of_impact * way.x();
+        REQUIRE(std::abs(free - hit) <= 2.0 * t);
+        ++hits;
+      }
+      grazes += early <= 1.0 && late > 1.0 ? 1 : 0;
+      from_contact += is_from_contact && result.verdict != Verdict::Interference ? 1 : 0;
+    }
+  }
+  CHECK(hits > kShifts / 10);
+  CHECK(from_contact > kShifts / 20);
+  CHECK(grazes < kShifts / 20);
+}
+
+TEST_CASE("a bar that turns meets a pin when its side is as near as the pin is thick",
+          "[property]") {
+  testing::RandomGeometry random(53);
+  constexpr double t = dowel::kDefaultTolerance_mm;
+  constexpr double kHalfWidth_mm = 2.0;
+  const auto bar_element = collision_element(testing::box({200, 2 * kHalfWidth_mm, 4}));
+  int hits = 0;
+  for (int i = 0; i < kTurns; ++i) {
+    const double radius = std::pow(10.0, random.uniform(-1.0, 0.7));
+    const double distance = random.uniform(10.0, 90.0);
+    // Of the pin from the bar, which touches it at neither end yet.
+    const double touching = std::asin((radius + kHalfWidth_mm) / distance);
+    const double angle = random.uniform(touching + 0.05, std::numbers::pi - touching - 0.05);
+    const Pose X_WO = random.pose(5'000);
+    CollisionScene scene;
+    scene.add(
+        collision_element(testing::transformed(Pose::from_translation({0, 0, -10}),
+                                               testing::cylinder(radius, 20, 16))),
+        X_WO * Pose::from_translation({distance * std::cos(angle), distance * std::sin(angle), 0}));
+    const BodyId bar = scene.add(bar_element, X_WO);
+    const double to_turn = random.uniform(0.2, 3.0);
+    const Pose end = X_WO * Pose::about_axis({0, 0, 0}, Eigen::Vector3d::UnitZ(), to_turn);
+    // The pin is as deep in the bar's side as its axis is nearer than radius and half width.
+    const auto angle_at = [&](double depth_mm) {
+      return angle - std::asin((radius + kHalfWidth_mm - depth_mm) / distance);
+    };
+    const auto result = sweep(scene, bar, X_WO, end);
+    CAPTURE(i, radius, distance, angle, to_turn);
+    const double accuracy_rad = 0.25 * t / distance;
+    if (to_turn < angle_at(0.9 * t)) REQUIRE(result.verdict != Verdict::Interference);
+    if (to_turn > angle_at(1.1 * t)) {
+      REQUIRE(result.verdict == Verdict::Interference);
+      REQUIRE(to_turn * result.time_of_impact >= angle_at(0.9 * t) - accuracy_rad);
+      REQUIRE(to_turn * result.time_of_impact <= angle_at(1.1 * t) + accuracy_rad);
+      ++hits;
+    }
+  }
+  CHECK(hits > kTurns / 3);
+  CHECK(hits < kTurns * 9 / 10);
 }
 
 TEST_CASE("a motion of no length is a check where the body stands") {

@@ -29,7 +29,7 @@ constexpr int kPairs = 25;
 #else
 constexpr int kPairs = 150;
 #endif
-constexpr int kSlowPairs = 2'000;
+constexpr int kSlowPairs = 2'200;  // of which OpenCascade leaves one in twenty open
 
 /// OpenCascade works with 1e-7 mm, and its distances were found off by 4e-5 mm at times.
 constexpr double kOracleSlack_mm = 1.0e-4;
@@ -374,6 +374,9 @@ TEST_CASE("two thousand verdicts are those of OpenCascade's Booleans", "[.slow]"
   }
   check_pairs(random, library_pool(library::all_parts(), 60), kSlowPairs * 3 / 10, tally);
   report(tally);
+  CHECK(tally.judged[Verdict::Clear] + tally.judged[Verdict::Contact] +
+            tally.judged[Verdict::Interference] >=
+        2'000);
 }
 
 /// Faults found by the tests above, at the tolerance and with the facets that show them.
