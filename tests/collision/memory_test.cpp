@@ -8,9 +8,7 @@
 #include <catch2/catch.hpp>
 #include <malloc.h>
 
-#include "collision_element.h"
-#include "random_geometry.h"
-#include "solids.h"
+#include "surroundings.h"
 
 using dowel::BodyId;
 using dowel::BodyVerdict;
@@ -18,6 +16,11 @@ using dowel::CollisionElement;
 using dowel::CollisionScene;
 using dowel::Pose;
 using dowel::Verdict;
+using dowel::testing::anchor;
+using dowel::testing::mover;
+using dowel::testing::next;
+using dowel::testing::Surroundings;
+using dowel::testing::told;
 namespace testing = dowel::testing;
 
 #ifndef DOWEL_SANITIZED  // sanitizers have these operators of their own
@@ -64,78 +67,6 @@ constexpr int kMovesInThreads = 100'000;
 #endif
 
 constexpr double kTolerance_mm = dowel::kDefaultTolerance_mm;
-constexpr double kTop_mm = 20.0;  // of the plate
-
-/// A plate with two holes, and on it a block, a drilled riser, a post, a wedge and a bar askew.
-struct Surroundings {
-  CollisionScene scene;
-  std::vector<BodyId> bodies;
-
-  Surroundings() {
-    const auto stand = [this](dowel::FacetedSolid solid, double x, double y, double z,
-                              double yaw_rad = 0.0) {
-      const Eigen::AngleAxisd yaw(yaw_rad, Eigen::Vector3d::UnitZ());
-      bodies.push_back(scene.add(testing::collision_element(std::move(solid)),
-                                 Pose(Eigen::Quaterniond(yaw), {x, y, z})));
-    };
-    stand(testing::plate_with_holes({120, 80, kTop_mm}, {{-40, 0, 6.0}, {40, 20, 6.0, 12.0}}, 12),
-          0, 0, 0);
-    stand(testing::box({20, 20, 20}, {0, 0, 10}), 0, 25, kTop_mm);
-    stand(testing::plate_with_holes({30, 30, 15}, {{0, 0, 6.5}}, 10), 40, -20, kTop_mm);
-    stand(testing::cylinder(8, 25, 14), -10, -25, kTop_mm);
-    stand(testing::wedge(0.5, 20, 15), -45, 25, kTop_mm);
-    stand(testing::box({50, 6, 20}, {0, 0, 10}), -42, -27, kTop_mm, 0.6);
-  }
-};
-
-/// Places where parts of a fixture are: flush on faces, in holes, beside and in each other.
-Pose anchor(testing::RandomGeometry& random) {
-  constexpr std::array<double, 5> kHeights{kTop_mm, kTop_mm + 15, kTop_mm + 20, 8.0, 0.0};
-  constexpr std::array<std::array<double, 2>, 5> kAxes{
-      {{-40, 0}, {40, 20}, {40, -20}, {0, 0}, {-10, -9}}};
-  const auto& axis = kAxes[random.index(kAxes.size())];
-  return Pose::from_translation({axis[0], axis[1], kHeights[random.index(kHeights.size())]});
-}
-
-/// A small step, a slide along the plate, a turn about z, or any motion; now and then a jump.
-Pose next(testing::RandomGeometry& random, const Pose& pose) {
-  if (random.index(8) == 0) return anchor(random);
-  const double size = std::pow(10.0, random.uniform(-4.0, 1.0));
-  switch (random.index(4)) {
-    case 0:
-      return Pose(pose.rotation(), pose.translation() + random.point(size));
-    case 1: {
-      Eigen::Vector3d shift = random.point(size);
-      shift.z() = 0.0;
-      return Pose(pose.rotation(), pose.translation() + shift);
-    }
-    case 2:
-      return pose * Pose::about_axis({0, 0, 0}, Eigen::Vector3d::UnitZ(), 0.05 * size);
-    default:
-      return Pose::about_axis(pose.translation(), random.direction(), 0.02 * size) * pose;
-  }
-}
-
-/// Who is met and how, as text.
-std::string told(std::span<const BodyVerdict> verdicts) {
-  std::string result;
-  for (const BodyVerdict& v : verdicts) {
-    result += std::to_string(v.with.value) + ' ' + std::string(to_string(v.pair.verdict)) + ' ';
-  }
-  return result;
-}
-
-dowel::FacetedSolid mover(int kind) {
-  switch (kind) {
-    case 0:
-      return testing::cylinder(5.993, 30, 12);
-    case 1:
-      return testing::box({15, 15, 15}, {0, 0, 7.5});
-    default:
-      return testing::stepped_pin({{5.993, 12}, {9.0, 6}}, 12);
-  }
-}
-
 }  // namespace
 
 TEST_CASE("a scene that remembers gives the verdicts of one that looks at all facets",
@@ -292,8 +223,8 @@ TEST_CASE("an instance in a scene of ten thousand takes less than 256 bytes") {
 #endif
 
 TEST_CASE("many scenes in many threads share elements and give the same verdicts") {
-  const auto plate = testing::collision_element(
-      testing::plate_with_holes({120, 80, kTop_mm}, {{-40, 0, 6.0}, {40, 20, 6.0, 12.0}}, 12));
+  const auto plate = testing::collision_element(testing::plate_with_holes(
+      {120, 80, Surroundings::kTop_mm}, {{-40, 0, 6.0}, {40, 20, 6.0, 12.0}}, 12));
   const auto pin = testing::collision_element(mover(2));
   const auto run = [&](std::string& verdicts) {
     testing::RandomGeometry random(33);
@@ -320,7 +251,7 @@ TEST_CASE("a move that is shorter than the known gap costs no test") {
   const BodyId moving = world.scene.add(testing::collision_element(mover(1)), Pose());
   const std::array<BodyId, 1> bodies{moving};
   const auto check_at = [&](double x) {
-    const std::array<Pose, 1> poses{Pose::from_translation({x, 0, kTop_mm + 2})};
+    const std::array<Pose, 1> poses{Pose::from_translation({x, 0, Surroundings::kTop_mm + 2})};
     return worst(world.scene.check(bodies, poses, {}));
   };
   CHECK(check_at(-20) == Verdict::Clear);
@@ -331,6 +262,6 @@ TEST_CASE("a move that is shorter than the known gap costs no test") {
   CHECK(world.scene.counters().box_tests == 0);
   // Something put in the way is seen, however small the move.
   world.scene.add(testing::collision_element(testing::box({5, 5, 5})),
-                  Pose::from_translation({-19.6, 0, kTop_mm + 5}));
+                  Pose::from_translation({-19.6, 0, Surroundings::kTop_mm + 5}));
   CHECK(check_at(-19.6999) == Verdict::Interference);
 }
