@@ -30,6 +30,13 @@ struct CoaxialFace {
   double least_radius_mm;
   double most_radius_mm;
   const ConeSurface* cone = nullptr;  ///< else the radii hold for all of it
+
+  void add(double radius_mm, double height_mm) {
+    from_mm = std::min(from_mm, height_mm);
+    to_mm = std::max(to_mm, height_mm);
+    least_radius_mm = std::min(least_radius_mm, radius_mm);
+    most_radius_mm = std::max(most_radius_mm, radius_mm);
+  }
 };
 
 bool same_axis(const CylinderSurface& a, const CylinderSurface& b) {
@@ -169,7 +176,7 @@ class Finder {
 
   /// Faces of revolution about the axis, with the radii that they take. These depend on the height
   /// alone and are least and largest at an end, where vertices lie on the exact face; a torus also
-  /// at its middle.
+  /// turns round in between.
   std::vector<CoaxialFace> coaxial_faces(const CylinderSurface& axis) const {
     std::vector<CoaxialFace> result;
     const AxisFrame frame(axis);
@@ -187,24 +194,40 @@ class Finder {
       for (const ModelTriangle* t : facets_[f]) {
         for (const Eigen::Vector3d& corner : t->corners) {
           const Eigen::Vector3d p = frame(corner);
-          entry.from_mm = std::min(entry.from_mm, p.z());
-          entry.to_mm = std::max(entry.to_mm, p.z());
-          entry.least_radius_mm = std::min(entry.least_radius_mm, p.head<2>().norm());
-          entry.most_radius_mm = std::max(entry.most_radius_mm, p.head<2>().norm());
+          entry.add(p.head<2>().norm(), p.z());
         }
+        if (torus != nullptr) add_turns(entry, *torus, model_.face(f), frame, *t);
       }
       if (cylinder != nullptr) {
         entry.least_radius_mm = entry.most_radius_mm = cylinder->radius_mm;
-      } else if (torus != nullptr) {
-        const double middle = frame(torus->center).z();
-        if (entry.from_mm <= middle && middle <= entry.to_mm) {
-          entry.least_radius_mm = torus->major_radius_mm - torus->minor_radius_mm;
-          entry.most_radius_mm = torus->major_radius_mm + torus->minor_radius_mm;
-        }
       }
       result.push_back(entry);
     }
     return result;
+  }
+
+  /// Adds the crowns, the inmost and the outmost circle of a torus where they pass over a facet.
+  static void add_turns(CoaxialFace& entry, const TorusSurface& torus, const Face& face,
+                        const AxisFrame& frame, const ModelTriangle& t) {
+    const double middle = frame(torus.center).z();
+    const auto angle_of = [&](const Eigen::Vector3d& corner) {
+      const Eigen::Vector3d p = frame(corner);
+      return std::atan2(p.z() - middle, p.head<2>().norm() - torus.major_radius_mm);
+    };
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    const double start = angle_of(t.corners[0]);
+    const double second = std::remainder(angle_of(t.corners[1]) - start, kTurn);
+    const double third = std::remainder(angle_of(t.corners[2]) - start, kTurn);
+    const auto [least, most] = std::minmax({0.0, second, third});
+    // Facets this far off span more of the tube than their corners tell.
+    const bool spans_any = face.facet_error_mm >= 0.5 * torus.minor_radius_mm;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const double angle = 0.25 * kTurn * quarter;
+      const double turn = std::remainder(angle - start, kTurn);
+      if (!spans_any && (turn <= least || turn >= most)) continue;
+      entry.add(torus.major_radius_mm + torus.minor_radius_mm * std::cos(angle),
+                middle + torus.minor_radius_mm * std::sin(angle));
+    }
   }
 
   /// Heights at which the profile may change, the ends of the part included.
@@ -311,8 +334,9 @@ class Finder {
     const std::array<Eigen::Vector3d, 3> corners{frame(t.corners[0]), frame(t.corners[1]),
                                                  frame(t.corners[2])};
     const auto [least, most] = std::minmax({corners[0].z(), corners[1].z(), corners[2].z()});
-    // A face normal to the axis does not stand off its facets along it.
-    const double tall = most - least <= kEndSlack_mm ? 0.0 : t.slack_mm;
+    // A plane normal to the axis does not stand off its facets along it.
+    const bool is_level = most - least <= kEndSlack_mm && t.normal_slack_mm == 0.0;
+    const double tall = is_level ? 0.0 : t.slack_mm;
     if (most + tall <= low || least - tall >= high) return;
     const Clipped part = clip(corners, low - tall, high + tall);
     if (part.count == 0) return;

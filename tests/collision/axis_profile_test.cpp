@@ -1,9 +1,12 @@
 #include "dowel/collision/axis_profile.h"
 
+#include <numbers>
+
 #include <catch2/catch.hpp>
 
 #include "collision_element.h"
 #include "dowel/collision/model.h"
+#include "dowel/kernel/mesh_defect.h"
 #include "random_geometry.h"
 #include "solids.h"
 
@@ -29,6 +32,44 @@ std::vector<std::array<double, 3>> steps_along_z(const AxisProfile& profile) {
     result.push_back({std::min(z0, z1), std::max(z0, z1), step.most_radius_mm()});
   }
   std::ranges::sort(result);
+  return result;
+}
+
+/// Of the profile's step at height `z`; 0 where there is none.
+double radius_at(const AxisProfile& profile, double z) {
+  double radius = 0.0;
+  for (const auto& [from, to, most] : steps_along_z(profile)) {
+    if (from < z && z < to) radius = std::max(radius, most);
+  }
+  return radius;
+}
+
+/// A cylinder whose top is a part of a sphere, `crown_mm` high, with no vertex but on its rim.
+dowel::FacetedSolid crowned_pin(double radius_mm, double height_mm, double crown_mm) {
+  dowel::FacetedSolid solid = testing::cylinder(radius_mm, height_mm, 16);
+  constexpr std::uint32_t kTop = 2;
+  const double ball_mm = 0.5 * (radius_mm * radius_mm / crown_mm + crown_mm);
+  solid.faces[kTop].surface =
+      dowel::SphereSurface{{0.0, 0.0, height_mm + crown_mm - ball_mm}, ball_mm};
+  solid.faces[kTop].facet_error_mm = crown_mm;
+  std::vector<std::uint32_t> rim;
+  for (std::uint32_t v = 0; v < solid.vertices.size(); ++v) {
+    const Eigen::Vector3d& p = solid.vertices[v];
+    if (p.z() == height_mm && p.head<2>().norm() > 0.5 * radius_mm) rim.push_back(v);
+  }
+  dowel::FacetedSolid result = solid;
+  result.triangles.clear();
+  result.face_of.clear();
+  for (std::size_t t = 0; t < solid.triangles.size(); ++t) {
+    if (solid.face_of[t] == kTop) continue;
+    result.triangles.push_back(solid.triangles[t]);
+    result.face_of.push_back(solid.face_of[t]);
+  }
+  for (std::size_t i = 1; i + 1 < rim.size(); ++i) {
+    result.triangles.push_back({rim[0], rim[i], rim[i + 1]});
+    result.face_of.push_back(kTop);
+  }
+  dowel::weld(result);
   return result;
 }
 
@@ -72,6 +113,41 @@ TEST_CASE("the air about a bore ends at what stands beside it") {
   CHECK(steps.front()[2] == Approx(6.0).epsilon(1e-12));
   CHECK(steps.back()[2] == Approx(12.0));
   CHECK(steps.back()[0] == Approx(20.5));
+}
+
+TEST_CASE("a shaft is as thick as the crowns of its torus, between all facets") {
+  const auto tube_segments = GENERATE(7U, 10U, 14U);
+  // Half a facet off: none has a corner on a crown.
+  const double phase = std::numbers::pi * (0.5 + 1.0 / tube_segments);
+  const CollisionModel model = model_of(
+      testing::merged(testing::cylinder(5.0, 30.0, 24),
+                      testing::transformed(Pose::from_translation({0, 0, 15}),
+                                           testing::torus(10.0, 3.0, 24, tube_segments, phase))));
+  REQUIRE(model.profiles().shafts.size() == 1);
+  for (const double angle : {0.01, 0.1, 0.5, 1.0, 1.5}) {
+    CAPTURE(tube_segments, angle);
+    const double radius_mm = 10.0 + 3.0 * std::sin(angle);
+    CHECK(radius_at(model.profiles().shafts[0], 15.0 + 3.0 * std::cos(angle)) >= radius_mm);
+    CHECK(radius_at(model.profiles().shafts[0], 15.0 - 3.0 * std::cos(angle)) >= radius_mm);
+  }
+  // No thicker either, and nothing beyond the crowns.
+  CHECK(radius_at(model.profiles().shafts[0], 15.0) <= 13.0 + 1e-9);
+  CHECK(radius_at(model.profiles().shafts[0], 18.1) == Approx(5.0));
+  CHECK(radius_at(model.profiles().shafts[0], 11.9) == Approx(5.0));
+}
+
+TEST_CASE("a shaft reaches as far as its crowned end, whose facets are level") {
+  constexpr double kRadius_mm = 5.0;
+  constexpr double kHeight_mm = 30.0;
+  constexpr double kCrown_mm = 0.2;
+  const CollisionModel model = model_of(crowned_pin(kRadius_mm, kHeight_mm, kCrown_mm));
+  REQUIRE(model.profiles().shafts.size() == 1);
+  const double ball_mm = 0.5 * (kRadius_mm * kRadius_mm / kCrown_mm + kCrown_mm);
+  for (const double above_mm : {0.01, 0.1, 0.19}) {
+    const double height_mm = ball_mm - kCrown_mm + above_mm;
+    CHECK(radius_at(model.profiles().shafts[0], kHeight_mm + above_mm) >=
+          std::sqrt(ball_mm * ball_mm - height_mm * height_mm));
+  }
 }
 
 TEST_CASE("a ring that lies on a mouth, in it by less than the tolerance, meets no wall") {

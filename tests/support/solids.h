@@ -282,4 +282,26 @@ inline FacetedSolid sphere(double radius_mm, std::uint32_t segments) {
   return builder.finish();
 }
 
+/// A ring about the z axis: `segments` about it, `tube_segments` about the tube, from `phase_rad`
+/// on (0: from the outmost circle). One face, no edges.
+inline FacetedSolid torus(double major_radius_mm, double minor_radius_mm, std::uint32_t segments,
+                          std::uint32_t tube_segments, double phase_rad = 0.0) {
+  detail::Builder builder;
+  std::vector<std::vector<std::uint32_t>> rings;
+  for (std::uint32_t i = 0; i < tube_segments; ++i) {
+    const double angle = phase_rad + 2.0 * std::numbers::pi * i / tube_segments;
+    rings.push_back(builder.ring(Eigen::Vector2d::Zero(), minor_radius_mm * std::sin(angle),
+                                 major_radius_mm + minor_radius_mm * std::cos(angle), segments,
+                                 0.0));
+  }
+  const std::uint32_t face =
+      builder.face(TorusSurface{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), major_radius_mm,
+                                minor_radius_mm},
+                   4.0 * std::numbers::pi * std::numbers::pi * major_radius_mm * minor_radius_mm);
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    builder.band(face, rings[i], rings[(i + 1) % rings.size()]);
+  }
+  return builder.finish();
+}
+
 }  // namespace dowel::testing
