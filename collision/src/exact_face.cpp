@@ -38,23 +38,6 @@ constexpr double kCoaxial = 1e-9;
 /// Arcs whose chord passes the centre closer than this share of the radius are no facet's.
 constexpr double kHalfCircle = 0.05;
 
-/// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
-/// False where they are tangent there.
-bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
-  for (int step = 0; step < 3; ++step) {
-    const double df = signed_distance_mm(f.surface, x);
-    const double dg = signed_distance_mm(g.surface, x);
-    const Eigen::Vector3d nf = distance_gradient(f.surface, x);
-    const Eigen::Vector3d ng = distance_gradient(g.surface, x);
-    const double cosine = nf.dot(ng);
-    const double determinant = 1.0 - cosine * cosine;
-    if (!(determinant > kTangent)) return false;
-    if (std::abs(df) <= kOnCurve_mm && std::abs(dg) <= kOnCurve_mm) return true;
-    x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
-  }
-  return true;
-}
-
 /// What an axis must have for a surface to be one of revolution about it: this direction, where it
 /// is not zero, and a point that it passes through, if any.
 struct AxisDemand {
@@ -318,6 +301,21 @@ bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i
   return t.slack_mm > 0.0 &&
          (t.edges[i] == EdgeShape::Convex || t.edges[i] == EdgeShape::Concave) &&
          is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
+}
+
+bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
+  for (int step = 0; step < 3; ++step) {
+    const double df = signed_distance_mm(f.surface, x);
+    const double dg = signed_distance_mm(g.surface, x);
+    const Eigen::Vector3d nf = distance_gradient(f.surface, x);
+    const Eigen::Vector3d ng = distance_gradient(g.surface, x);
+    const double cosine = nf.dot(ng);
+    const double determinant = 1.0 - cosine * cosine;
+    if (!(determinant > kTangent)) return false;
+    if (std::abs(df) <= kOnCurve_mm && std::abs(dg) <= kOnCurve_mm) return true;
+    x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
+  }
+  return true;
 }
 
 TrianglePoint closest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners,

@@ -31,6 +31,10 @@ inline bool is_exact(const Face& face) {
   return !std::holds_alternative<OtherSurface>(face.surface);
 }
 
+/// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
+/// False where they are tangent there.
+bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x);
+
 /// True where edge `i` is the chord of a curve in which two exact faces meet.
 bool is_chord(const CollisionModel& model, const ModelTriangle& triangle, std::size_t i);
 

@@ -14,7 +14,8 @@ namespace dowel {
 namespace {
 
 /// Alternating projections between two exact faces before their gap is taken as it stands, and the
-/// share of the tolerance below which another one gains nothing.
+/// share of the tolerance below which another one gains nothing. They are led on as in Walker, Ni,
+/// "Anderson Acceleration for Fixed-Point Iterations", 2011, with a memory of one step.
 constexpr int kProjections = 16;
 constexpr double kProjectionGain = 1.0e-3;
 
@@ -168,20 +169,31 @@ bool Judge::touches(const NarrowScratch::FacetPair& near) {
 }
 
 bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b) {
-  double previous = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d last_end = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_way = Eigen::Vector3d::Zero();
   for (int step = 0; step < kProjections; ++step) {
     const FacePoint near_a = nearest_on_patch(pair_.a, i, X_AB_ * on_b);
     const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
     const FacePoint near_b = nearest_on_patch(pair_.b, j, on_a);
     if (!std::isfinite(near_a.distance_squared_mm2 + near_b.distance_squared_mm2)) return false;
-    on_b = near_b.point;
     const double gap = std::sqrt(near_b.distance_squared_mm2);
     if (gap <= options_.tolerance_mm) {
-      contact_.touch(i, near_a.point, on_a, j, on_b);
+      contact_.touch(i, near_a.point, on_a, j, near_b.point);
       return true;
     }
-    if (previous - gap < kProjectionGain * options_.tolerance_mm) return false;
-    previous = gap;
+    if (step > 1 && least - gap < kProjectionGain * options_.tolerance_mm) return false;
+    least = std::min(least, gap);
+    // A wide rim near a plane goes a share of gap by radius of its way in each step: where the way
+    // changes as it did in the last one, it ends here.
+    const Eigen::Vector3d way = near_b.point - on_b;
+    const Eigen::Vector3d change = way - last_way;
+    on_b = near_b.point;
+    if (step > 0 && !change.isZero(0.0)) {
+      on_b -= way.dot(change) / change.squaredNorm() * (near_b.point - last_end);
+    }
+    last_end = near_b.point;
+    last_way = way;
   }
   return false;
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
 
 /// How far a witness may lie from its start, in tolerances; and, as the deepest place behind curved
-/// facets may be anywhere along them, the length of the shorter one more.
+/// facets may be anywhere along them, the length of the shorter one and what they stand off more.
 constexpr double kReachTolerances = 64.0;
 
 /// A pose at which cores are asked in vain costs as much as some tens that find the ball again.
@@ -148,7 +148,7 @@ double Judge::reach_mm(const ModelTriangle& a, const ModelTriangle& b) const {
   if (a.slack_mm > 0.0) length_mm = longest_edge(a.corners);
   if (b.slack_mm > 0.0) length_mm = std::min(length_mm, longest_edge(b.corners));
   if (!std::isfinite(length_mm)) length_mm = 0.0;  // flat, with straight edges
-  return kReachTolerances * options_.tolerance_mm + length_mm;
+  return kReachTolerances * options_.tolerance_mm + length_mm + a.slack_mm + b.slack_mm;
 }
 
 bool Judge::try_start(const Eigen::Vector3d& start_B, std::uint32_t i, std::uint32_t j,

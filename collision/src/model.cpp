@@ -96,6 +96,8 @@ Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTria
   const bool both = is_exact(face) && is_exact(beyond);
   if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return {0.0, 0.0, 0.0};
   Eigen::Vector3d x = middle;
+  // Twice: the curve may be far off where the surfaces meet at a small angle.
+  if (to_intersection(face, beyond, x) && to_intersection(face, beyond, x)) return x - middle;
   for (int step = 0; step < 8; ++step) {
     x = closest_point(face.surface, closest_point(beyond.surface, x));
   }

@@ -92,6 +92,56 @@ TEST_CASE("depth and gap decide the verdict within a tenth of the tolerance, in 
   }
 }
 
+TEST_CASE("a rim that stands on a plane is judged by its circle, not by its chords", "[property]") {
+  testing::RandomGeometry random(16);
+  const FacetedSolid table = testing::box({600, 600, 20}, {0, 0, -10});
+  const double t = 0.01;
+  for (int i = 0; i < 100; ++i) {
+    // Two flat cones, base to base: their chords are off the rim by many tolerances.
+    const double radius = random.uniform(5, 200);
+    const double height = radius * random.uniform(0.03, 0.4);
+    const Case c{"",
+                 testing::revolved({{0, 0}, {radius, height}, {0, 2 * height}},
+                                   16 + random.index(60), random.uniform(0, 1)),
+                 table,
+                 {}};
+    const double tilt = random.uniform(std::atan2(height, radius) + 0.1, 1.5);
+    const double lowest = height * std::cos(tilt) - radius * std::sin(tilt);
+    const auto at = [&](double gap) {
+      return Pose(Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitX())),
+                  {0, 0, gap - lowest});
+    };
+    CAPTURE(i, radius, height, tilt);
+    const Pose X_WB = random.pose(1000);
+    CHECK(verdict_at(c, at(0.5 * t), X_WB, t) == Verdict::Contact);
+    CHECK(verdict_at(c, at(0.0), X_WB, t) == Verdict::Contact);
+    CHECK(verdict_at(c, at(1.1 * t), X_WB, t) == Verdict::Clear);
+  }
+}
+
+TEST_CASE("a fine ball in a coarse one interferes as deep as they are", "[property]") {
+  testing::RandomGeometry random(17);
+  const double t = 0.01;
+  for (int i = 0; i < 60; ++i) {
+    // Facets of the large one are off by hundreds of tolerances.
+    const double radius = random.uniform(40, 90);
+    const double small = random.uniform(2, 5);
+    const Case c{"",
+                 testing::sphere(small, 24 + random.index(24)),
+                 testing::sphere(radius, 10 + random.index(8)),
+                 {}};
+    const auto at = [&](double depth) {
+      return Pose::from_translation((radius + small - depth) * random.direction());
+    };
+    CAPTURE(i, radius, small);
+    const Pose X_WB = random.pose(1000);
+    CHECK(verdict_at(c, at(-1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(verdict_at(c, at(0.9 * t), X_WB, t) == Verdict::Contact);
+    CHECK(verdict_at(c, at(1.1 * t), X_WB, t) == Verdict::Interference);
+    CHECK(verdict_at(c, at(2.0 * t), X_WB, t) == Verdict::Interference);
+  }
+}
+
 TEST_CASE("a pin in its hole is judged by the exact cylinders, not by the facets", "[property]") {
   testing::RandomGeometry random(13);
   const double t = 0.001;

@@ -53,13 +53,15 @@ const Profile kConicalSeat{{4, 0}, {20, 0}, {20, 8}, {12, 8}};
 const Profile kConicalHead{{0, 0}, {4, 0}, {12, 8}, {0, 8}};
 const Profile kChamferedPin{{0, 0}, {5, 0}, {6, 1}, {6, 30}, {0, 30}};
 const Profile kCollar{{0, 0}, {4, 0}, {4, 10}, {9, 10}, {9, 14}, {5, 14}, {5, 25}, {0, 25}};
+const Profile kFlatCone{{0, 0}, {16, 0}, {0, 3}};
 const Profile kCounterbore{{4, 0}, {20, 0}, {20, 12}, {8, 12}, {8, 7}, {4, 7}};
 
 }  // namespace
 
 TEST_CASE("the distance from coarse solids of revolution is that from their profile",
           "[property]") {
-  const auto profile = GENERATE(kConicalSeat, kConicalHead, kChamferedPin, kCollar, kCounterbore);
+  const auto profile =
+      GENERATE(kConicalSeat, kConicalHead, kChamferedPin, kCollar, kFlatCone, kCounterbore);
   const auto segments = GENERATE(8U, 11U, 12U, 16U, 24U);
   CAPTURE(profile.size(), profile[1].x(), segments);
   const CollisionModel model(
