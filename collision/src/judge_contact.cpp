@@ -190,7 +190,8 @@ bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d o
     const Eigen::Vector3d change = way - last_way;
     on_b = near_b.point;
     if (step > 0 && !change.isZero(0.0)) {
-      on_b -= way.dot(change) / change.squaredNorm() * (near_b.point - last_end);
+      const double left = -way.dot(change) / change.squaredNorm();
+      on_b = nearest_on_patch(pair_.b, j, on_b + left * (near_b.point - last_end)).point;
     }
     last_end = near_b.point;
     last_way = way;

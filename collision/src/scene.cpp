@@ -1,16 +1,14 @@
 #include "dowel/collision/scene.h"
 
 #include <algorithm>
-#include <atomic>
+#include <cmath>
 #include <map>
-#include <mutex>
 
 #include "dowel/collision/box_separation.h"
 #include "dowel/collision/layered_projection.h"
 #include "dowel/collision/model.h"
 #include "dowel/collision/silhouette.h"
 #include "dowel/kernel/check.h"
-#include "dowel/kernel/error.h"
 #include "judge.h"
 #include "kept_contact.h"
 #include "scene_impl.h"
@@ -29,60 +27,15 @@ constexpr double kSizesOfRoom = 0.75;
 /// Added to each step of a way: rounding of poses 100 m from the origin.
 constexpr double kWayRounding_mm = 1.0e-10;
 
-bool is_box(const Obb& obb) {
-  // Written so that NaN fails.
-  const Eigen::Matrix3d skew = obb.axes.transpose() * obb.axes - Eigen::Matrix3d::Identity();
-  return obb.center.allFinite() && obb.half_extents_mm.allFinite() &&
-         obb.half_extents_mm.minCoeff() >= 0.0 && skew.cwiseAbs().maxCoeff() <= kStoredAxisSlack;
-}
-
-/// A part that its box does not hold would go unseen where it sticks out.
-void expect_inside(const Obb& obb, const CollisionModel& model) {
-  const double slack_mm = kBoxSlack_mm + kBoxSlackRatio * obb.half_extents_mm.norm();
-  for (const ModelTriangle& triangle : model.triangles()) {
-    for (const Eigen::Vector3d& corner : triangle.corners) {
-      const double outside_mm = obb.face_distance_mm(corner);
-      if (outside_mm <= slack_mm) continue;
-      throw Error(ErrorCode::FileMalformed, "a vertex is " + std::to_string(outside_mm) +
-                                                " mm outside the box of its element");
-    }
-  }
-}
-
 }  // namespace
 
-struct CollisionElement::State {
-  Loader load;
-  std::vector<std::uint32_t> hole_faces;
-  mutable std::mutex mutex;
-  mutable std::unique_ptr<const CollisionModel> model;
-  mutable std::atomic<const CollisionModel*> ready{nullptr};
-};
-
-CollisionElement::CollisionElement(const Obb& obb, Loader load,
-                                   std::vector<std::uint32_t> hole_faces)
-    : obb_(obb), state_(std::make_unique<State>()) {
-  DOWEL_EXPECTS(load != nullptr && is_box(obb));
-  state_->load = std::move(load);
-  state_->hole_faces = std::move(hole_faces);
+void expect_valid(const QueryOptions& options) {
+  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm &&
+                options.tolerance_mm <= kMaxTolerance_mm);
 }
 
-CollisionElement::~CollisionElement() = default;
-
-bool CollisionElement::is_loaded() const noexcept {
-  return state_->ready.load(std::memory_order_acquire) != nullptr;
-}
-
-const CollisionModel& CollisionElement::model() const {
-  if (const CollisionModel* model = state_->ready.load(std::memory_order_acquire)) return *model;
-  const std::scoped_lock lock(state_->mutex);
-  if (!state_->model) {
-    auto model = std::make_unique<const CollisionModel>(state_->load(), state_->hole_faces);
-    expect_inside(obb_, *model);
-    state_->model = std::move(model);
-    state_->ready.store(state_->model.get(), std::memory_order_release);
-  }
-  return *state_->model;
+void expect_valid_place(const Pose& X_WB) {
+  DOWEL_EXPECTS(X_WB.translation().cwiseAbs().maxCoeff() <= kMaxPlace_mm);
 }
 
 CollisionScene::CollisionScene() : impl_(std::make_unique<Impl>()) {}
@@ -97,6 +50,7 @@ CollisionScene::Impl::Body& CollisionScene::Impl::body(BodyId id) {
 
 BodyId CollisionScene::add(std::shared_ptr<const CollisionElement> element, const Pose& X_WB) {
   DOWEL_EXPECTS(element != nullptr);
+  expect_valid_place(X_WB);
   BodyId id{static_cast<std::uint32_t>(impl_->bodies.size())};
   if (impl_->free_ids.empty()) {
     impl_->bodies.add_one();
@@ -122,6 +76,7 @@ void CollisionScene::remove(BodyId id) {
 }
 
 void CollisionScene::move(BodyId id, const Pose& X_WB) {
+  expect_valid_place(X_WB);
   Impl::Body& body = impl_->body(id);
   body.X_WB = X_WB;
   impl_->projection.remove(id.value);
@@ -140,6 +95,12 @@ std::size_t CollisionScene::size() const {
 void CollisionScene::set_reliefs(BodyId first, BodyId second, std::vector<ThreadRelief> reliefs) {
   impl_->body(first);
   impl_->body(second);
+  DOWEL_EXPECTS(first != second);
+  for (const ThreadRelief& relief : reliefs) {
+    DOWEL_EXPECTS(relief.start.allFinite() && std::isfinite(relief.length_mm) &&
+                  std::isfinite(relief.radius_mm));
+    DOWEL_EXPECTS(std::abs(relief.direction.norm() - 1.0) <= kStoredAxisSlack);
+  }
   impl_->movers.clear();
   impl_->reliefs.erase({second, first});
   if (reliefs.empty()) {
@@ -359,15 +320,6 @@ bool CollisionScene::Impl::check_mover(Mover& mover, bool is_alone, const QueryO
 void CollisionScene::Impl::forget_all_but(BodyId id) {
   std::erase_if(movers, [id](const Mover& mover) { return mover.id != id; });
 }
-
-namespace {
-
-void expect_valid(const QueryOptions& options) {
-  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm &&
-                options.tolerance_mm <= kMaxTolerance_mm);
-}
-
-}  // namespace
 
 std::span<const BodyVerdict> CollisionScene::check(std::span<const BodyId> moving,
                                                    std::span<const Pose> poses,

@@ -14,6 +14,12 @@
 
 namespace dowel {
 
+/// Expects a tolerance from kMinTolerance_mm to kMaxTolerance_mm.
+void expect_valid(const QueryOptions& options);
+
+/// Expects a body no further than kMaxPlace_mm from the origin.
+void expect_valid_place(const Pose& X_WB);
+
 struct CollisionScene::Impl {
   struct Body {
     std::shared_ptr<const CollisionElement> element;  // null: a free id

@@ -291,8 +291,9 @@ class CollisionScene::Impl::PairSweep {
 SweepResult CollisionScene::sweep(std::span<const BodyId> moving, std::span<const Pose> X_UB,
                                   const Pose& from, const Pose& to, const QueryOptions& options) {
   DOWEL_EXPECTS(moving.size() == X_UB.size());
-  DOWEL_EXPECTS(options.tolerance_mm >= kMinTolerance_mm &&
-                options.tolerance_mm <= kMaxTolerance_mm);
+  expect_valid(options);
+  for (const Pose& X_WU : {from, to}) expect_valid_place(X_WU);
+  for (const Pose& in_unit : X_UB) expect_valid_place(in_unit);
   SweepResult result;
   std::vector<BodyVerdict> touched;
   const Impl::MovingMark mark(*impl_, moving);

@@ -100,11 +100,11 @@ TEST_CASE("a rim that stands on a plane is judged by its circle, not by its chor
     // Two flat cones, base to base: their chords are off the rim by many tolerances.
     const double radius = random.uniform(5, 200);
     const double height = radius * random.uniform(0.03, 0.4);
-    const Case c{"",
-                 testing::revolved({{0, 0}, {radius, height}, {0, 2 * height}},
-                                   16 + random.index(60), random.uniform(0, 1)),
-                 table,
-                 {}};
+    const ContactCase c{"",
+                        testing::revolved({{0, 0}, {radius, height}, {0, 2 * height}},
+                                          16 + random.index(60), random.uniform(0, 1)),
+                        table,
+                        {}};
     const double tilt = random.uniform(std::atan2(height, radius) + 0.1, 1.5);
     const double lowest = height * std::cos(tilt) - radius * std::sin(tilt);
     const auto at = [&](double gap) {
@@ -113,9 +113,9 @@ TEST_CASE("a rim that stands on a plane is judged by its circle, not by its chor
     };
     CAPTURE(i, radius, height, tilt);
     const Pose X_WB = random.pose(1000);
-    CHECK(verdict_at(c, at(0.5 * t), X_WB, t) == Verdict::Contact);
-    CHECK(verdict_at(c, at(0.0), X_WB, t) == Verdict::Contact);
-    CHECK(verdict_at(c, at(1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(PlacedCase(c).at(at(0.5 * t), X_WB, t) == Verdict::Contact);
+    CHECK(PlacedCase(c).at(at(0.0), X_WB, t) == Verdict::Contact);
+    CHECK(PlacedCase(c).at(at(1.1 * t), X_WB, t) == Verdict::Clear);
   }
 }
 
@@ -126,19 +126,19 @@ TEST_CASE("a fine ball in a coarse one interferes as deep as they are", "[proper
     // Facets of the large one are off by hundreds of tolerances.
     const double radius = random.uniform(40, 90);
     const double small = random.uniform(2, 5);
-    const Case c{"",
-                 testing::sphere(small, 24 + random.index(24)),
-                 testing::sphere(radius, 10 + random.index(8)),
-                 {}};
+    const ContactCase c{"",
+                        testing::sphere(small, 24 + random.index(24)),
+                        testing::sphere(radius, 10 + random.index(8)),
+                        {}};
     const auto at = [&](double depth) {
       return Pose::from_translation((radius + small - depth) * random.direction());
     };
     CAPTURE(i, radius, small);
     const Pose X_WB = random.pose(1000);
-    CHECK(verdict_at(c, at(-1.1 * t), X_WB, t) == Verdict::Clear);
-    CHECK(verdict_at(c, at(0.9 * t), X_WB, t) == Verdict::Contact);
-    CHECK(verdict_at(c, at(1.1 * t), X_WB, t) == Verdict::Interference);
-    CHECK(verdict_at(c, at(2.0 * t), X_WB, t) == Verdict::Interference);
+    CHECK(PlacedCase(c).at(at(-1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(PlacedCase(c).at(at(0.9 * t), X_WB, t) == Verdict::Contact);
+    CHECK(PlacedCase(c).at(at(1.1 * t), X_WB, t) == Verdict::Interference);
+    CHECK(PlacedCase(c).at(at(2.0 * t), X_WB, t) == Verdict::Interference);
   }
 }
 

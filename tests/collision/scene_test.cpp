@@ -261,3 +261,44 @@ TEST_CASE("the same queries give the same verdicts and counters again", "[determ
   CHECK(run() == run());
   CHECK(run().size() > 10);
 }
+
+TEST_CASE("what would lead to a wrong verdict is refused") {
+  const auto block = testing::collision_element(testing::box({10, 10, 10}));
+  CollisionScene scene;
+  scene.add(block, Pose());
+  const BodyId body = scene.add(block, Pose::from_translation({0, 0, 30}));
+  const Pose in_unit;
+  const auto sweep_from = [&](double x, double tolerance_mm) {
+    return scene.sweep(std::span(&body, 1), std::span(&in_unit, 1),
+                       Pose::from_translation({x, 0, 0}), Pose::from_translation({-50, 0, 0}),
+                       {.tolerance_mm = tolerance_mm});
+  };
+  CHECK(sweep_from(50.0, 0.01).verdict == Verdict::Interference);
+  for (const double tolerance_mm : {-1.0, 0.0, 1e-7, 11.0, std::nan(""), HUGE_VAL}) {
+    CAPTURE(tolerance_mm);
+    CHECK_THROWS_AS(sweep_from(50.0, tolerance_mm), std::logic_error);
+    CHECK_THROWS_AS(scene.check_all({.tolerance_mm = tolerance_mm}), std::logic_error);
+    const Pose X_WB;
+    CHECK_THROWS_AS(
+        scene.check(std::span(&body, 1), std::span(&X_WB, 1), {.tolerance_mm = tolerance_mm}),
+        std::logic_error);
+  }
+  // So far off that a place is not known to the tolerance.
+  CHECK_THROWS_AS(sweep_from(1e16, 0.01), std::logic_error);
+  CHECK_THROWS_AS(scene.add(block, Pose::from_translation({0, 1e16, 0})), std::logic_error);
+  CHECK_THROWS_AS(scene.move(body, Pose::from_translation({0, 0, -1e16})), std::logic_error);
+  const double nan = std::nan("");
+  CHECK_THROWS_AS(scene.set_reliefs(body, body, {}), std::logic_error);
+  CHECK_THROWS_AS(scene.set_reliefs(BodyId{0}, body, {{{nan, 0, 0}, {0, 0, 1}, 5, 5}}),
+                  std::logic_error);
+  CHECK_THROWS_AS(scene.set_reliefs(BodyId{0}, body, {{{0, 0, 0}, {0, 0, 0}, 5, 5}}),
+                  std::logic_error);
+  // Elements: one without a solid, one that sticks out of its box.
+  const dowel::Obb small{{0, 0, 0}, Eigen::Matrix3d::Identity(), {5, 5, 4}};
+  const CollisionElement empty(small, [] { return std::shared_ptr<const FacetedSolid>(); });
+  CHECK_THROWS_AS(empty.model(), std::logic_error);
+  const auto solid = std::make_shared<const FacetedSolid>(testing::box({10, 10, 10}));
+  const CollisionElement outside(small, [solid] { return solid; });
+  CHECK_THROWS_WITH(outside.model(), Catch::Contains("1.000000 mm outside the box of its element"));
+  CHECK_FALSE(outside.is_loaded());
+}

@@ -80,6 +80,8 @@ struct SweepResult {
 };
 
 /// Placed bodies and the queries on them. One scene a thread; elements may be shared between them.
+/// Expects of all poses at which bodies are placed or between which they are swept: within
+/// kMaxPlace_mm of the origin; of all queries: a tolerance in [kMinTolerance_mm, kMaxTolerance_mm].
 class CollisionScene {
  public:
   CollisionScene();
@@ -94,6 +96,7 @@ class CollisionScene {
   std::size_t size() const;
 
   /// Declares threads in which `first` and `second` may overlap; replaces earlier ones of the pair.
+  /// Expects: two bodies, finite lengths, unit directions.
   void set_reliefs(BodyId first, BodyId second, std::vector<ThreadRelief> reliefs);
 
   /// Bodies that are not clear of the moving ones, were these placed at `poses` (one for each);

@@ -5,6 +5,10 @@ namespace dowel {
 /// Coordinates beyond this are rejected at the door: 100 m keeps one double ulp below 1.5e-11 mm.
 inline constexpr double kMaxCoordinate_mm = 1.0e5;
 
+/// Bodies are placed no further from the origin than this: 10 km keeps the rounding of a placed
+/// point below 2e-9 mm, far below every tolerance.
+inline constexpr double kMaxPlace_mm = 1.0e7;
+
 /// Two axes, points or radii closer than this are the same when features are recognised. A tenth
 /// of a micrometre: well under what a fixture is machined to, well over rounding and over the 7
 /// digits that some STEP writers keep.
