@@ -38,6 +38,23 @@ constexpr double kCoaxial = 1e-9;
 /// Arcs whose chord passes the centre closer than this share of the radius are no facet's.
 constexpr double kHalfCircle = 0.05;
 
+/// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
+/// False where they are tangent there.
+bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
+  for (int step = 0; step < 3; ++step) {
+    const double df = signed_distance_mm(f.surface, x);
+    const double dg = signed_distance_mm(g.surface, x);
+    const Eigen::Vector3d nf = distance_gradient(f.surface, x);
+    const Eigen::Vector3d ng = distance_gradient(g.surface, x);
+    const double cosine = nf.dot(ng);
+    const double determinant = 1.0 - cosine * cosine;
+    if (!(determinant > kTangent)) return false;
+    if (std::abs(df) <= kOnCurve_mm && std::abs(dg) <= kOnCurve_mm) return true;
+    x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
+  }
+  return true;
+}
+
 /// What an axis must have for a surface to be one of revolution about it: this direction, where it
 /// is not zero, and a point that it passes through, if any.
 struct AxisDemand {
@@ -60,16 +77,24 @@ AxisDemand axis_demand(const Surface& surface) {
   return std::visit(Visitor{}, surface);
 }
 
-struct Axis {
-  Eigen::Vector3d origin;
+/// A circle in which two faces of revolution meet.
+struct RimCircle {
+  Eigen::Vector3d center;
   Eigen::Vector3d direction;
+  double radius_mm;
 };
 
-/// The axis about which both surfaces turn, so that they meet in circles; nothing where there is
+/// From the circle's axis to a point.
+Eigen::Vector3d from_axis(const RimCircle& circle, const Eigen::Vector3d& p) {
+  const Eigen::Vector3d d = p - circle.center;
+  return d - circle.direction * circle.direction.dot(d);
+}
+
+/// The circle through `start` about the axis about which both surfaces turn; nothing where there is
 /// none. Two spheres are left to the general search.
-std::optional<Axis> common_axis(const Surface& f, const Surface& g) {
-  AxisDemand a = axis_demand(f);
-  AxisDemand b = axis_demand(g);
+std::optional<RimCircle> rim_circle(const Face& f, const Face& g, const Eigen::Vector3d& start) {
+  AxisDemand a = axis_demand(f.surface);
+  AxisDemand b = axis_demand(g.surface);
   if (a.direction.isZero(0.0)) std::swap(a, b);
   if (a.direction.isZero(0.0) || (!a.has_point && !b.has_point)) return std::nullopt;
   if (a.direction.cross(b.direction).squaredNorm() > kCoaxial * kCoaxial) return std::nullopt;
@@ -77,14 +102,9 @@ std::optional<Axis> common_axis(const Surface& f, const Surface& g) {
       a.direction.cross(b.point - a.point).squaredNorm() > kCoaxial * kCoaxial) {
     return std::nullopt;
   }
-  return Axis{a.has_point ? a.point : b.point, a.direction};
-}
-
-/// True where `c`, a point of the plane of a facet, lies on the face's side of the exact surface
-/// beyond its edge.
-bool on_face_side(const Face& beyond, EdgeShape shape, const Eigen::Vector3d& c) {
-  const double distance = outward_distance_mm(beyond, c);
-  return shape == EdgeShape::Convex ? distance <= 0.0 : distance >= 0.0;
+  const Eigen::Vector3d& on_axis = a.has_point ? a.point : b.point;
+  const Eigen::Vector3d center = on_axis + a.direction * a.direction.dot(start - on_axis);
+  return RimCircle{center, a.direction, (start - center).norm()};
 }
 
 Eigen::Vector3d edge_of(const ModelTriangle& t, std::size_t i) {
@@ -94,6 +114,22 @@ Eigen::Vector3d edge_of(const ModelTriangle& t, std::size_t i) {
 /// In-plane distance of `c` from edge `i` times the edge's length, positive outside the triangle.
 double beyond_edge_by_length(const ModelTriangle& t, std::size_t i, const Eigen::Vector3d& c) {
   return edge_of(t, i).cross(t.normal).dot(c - t.corners[i]);
+}
+
+/// Whether `c`, a foot on the face behind a facet, lies on the face's side of the rim at edge `i`.
+bool on_face_side(const CollisionModel& model, const ModelTriangle& t, std::size_t i,
+                  const Eigen::Vector3d& c) {
+  const Face& beyond = model.face(t.neighbours[i]);
+  if (t.edges[i] != EdgeShape::Blend) {
+    const double distance = outward_distance_mm(beyond, c);
+    return t.edges[i] == EdgeShape::Convex ? distance <= 0.0 : distance >= 0.0;
+  }
+  // Neither surface ends at the other one. The face lies in the circle or around it.
+  const auto circle = rim_circle(model.face(t.face), beyond, t.corners[i]);
+  if (!circle) return false;
+  const Eigen::Vector3d outward = edge_of(t, i).cross(t.normal);
+  const bool is_around = outward.dot(circle->center - t.corners[i]) > 0.0;
+  return (from_axis(*circle, c).norm() >= circle->radius_mm) == is_around;
 }
 
 /// Whether that is no more than the facet's slack, on either side.
@@ -149,7 +185,7 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t, const 
     if (!is_chord(model, t, i)) continue;
     if (beyond_edge_by_length(t, i, x) <= 0.0) continue;
     if (beyond_edge_by_length(t, i, c) > 0.0 && !is_near_edge(t, i, c)) continue;
-    if (is_over_chord(t, i, c) && on_face_side(model.face(t.neighbours[i]), t.edges[i], c)) {
+    if (is_over_chord(t, i, c) && on_face_side(model, t, i, c)) {
       return true;
     }
   }
@@ -162,7 +198,7 @@ bool is_short_of_rim(const CollisionModel& model, const ModelTriangle& t, const 
 bool overhangs_rim(const CollisionModel& model, const Chord& chord, const Eigen::Vector3d& c) {
   const ModelTriangle& t = model.triangles()[chord.triangle];
   return is_near_edge(t, chord.edge, c) && is_over_chord(t, chord.edge, c) &&
-         !on_face_side(model.face(t.neighbours[chord.edge]), t.edges[chord.edge], c);
+         !on_face_side(model, t, chord.edge, c);
 }
 
 FacePoint at(const Eigen::Vector3d& point, const Eigen::Vector3d& p, FacePoint::Place place) {
@@ -170,31 +206,30 @@ FacePoint at(const Eigen::Vector3d& point, const Eigen::Vector3d& p, FacePoint::
 }
 
 FacePoint::Place rim_place(EdgeShape shape) {
-  return shape == EdgeShape::Convex ? FacePoint::Place::ConvexRim : FacePoint::Place::ConcaveRim;
+  return shape == EdgeShape::Convex    ? FacePoint::Place::ConvexRim
+         : shape == EdgeShape::Concave ? FacePoint::Place::ConcaveRim
+                                       : FacePoint::Place::Face;
 }
 
 /// The same as `nearest_on_arc` where the curve is a circle; nothing where it is none.
 std::optional<FacePoint> nearest_on_circle(const Face& face, const Face& beyond,
                                            const Eigen::Vector3d& start, const Eigen::Vector3d& end,
                                            EdgeShape shape, const Eigen::Vector3d& p) {
-  const auto axis = common_axis(face.surface, beyond.surface);
-  if (!axis) return std::nullopt;
-  const Eigen::Vector3d& direction = axis->direction;
-  const Eigen::Vector3d center = axis->origin + direction * direction.dot(start - axis->origin);
-  const double radius = (start - center).norm();
-  const Eigen::Vector3d to_middle = 0.5 * (start + end) - center;
+  const auto circle = rim_circle(face, beyond, start);
+  if (!circle) return std::nullopt;
+  const double radius = circle->radius_mm;
+  const Eigen::Vector3d to_middle = 0.5 * (start + end) - circle->center;
   if (to_middle.squaredNorm() < kHalfCircle * kHalfCircle * radius * radius) return std::nullopt;
-  Eigen::Vector3d outward = p - center;
-  outward -= direction * direction.dot(outward);
-  const double from_axis = outward.norm();
+  Eigen::Vector3d outward = from_axis(*circle, p);
+  const double from_axis_mm = outward.norm();
   // Every place is as near to a point of the axis.
-  if (from_axis <= kOnAxis_mm) outward = to_middle;
-  Eigen::Vector3d x = center + outward * (radius / outward.norm());
+  if (from_axis_mm <= kOnAxis_mm) outward = to_middle;
+  Eigen::Vector3d x = circle->center + outward * (radius / outward.norm());
   if (to_middle.dot(x - start) <= 0.0) {
     const bool start_is_near = (p - start).squaredNorm() < (p - end).squaredNorm();
     return at(start_is_near ? start : end, p, FacePoint::Place::Corner);
   }
-  if (!to_intersection(face, beyond, x)) return std::nullopt;
+  if (shape != EdgeShape::Blend && !to_intersection(face, beyond, x)) return std::nullopt;
   return at(x, p, rim_place(shape));
 }
 
@@ -260,10 +295,7 @@ FacePoint nearest_on_rim_of_patch(const CollisionModel& model, const ModelTriang
   }
   const auto i = static_cast<std::size_t>(q.region - 1);
   if (is_chord(model, t, i)) return nearest_on_arc(model, t, i, p);
-  const FacePoint::Place place = t.edges[i] == EdgeShape::Convex    ? FacePoint::Place::ConvexRim
-                                 : t.edges[i] == EdgeShape::Concave ? FacePoint::Place::ConcaveRim
-                                                                    : FacePoint::Place::Face;
-  return at(closest_point(model.face(t.face).surface, q.point), p, place);
+  return at(closest_point(model.face(t.face).surface, q.point), p, rim_place(t.edges[i]));
 }
 
 FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle& t,
@@ -297,25 +329,35 @@ FacePoint nearest_with_overhang(const CollisionModel& model, const ModelTriangle
 
 }  // namespace
 
-bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
-  return t.slack_mm > 0.0 &&
-         (t.edges[i] == EdgeShape::Convex || t.edges[i] == EdgeShape::Concave) &&
-         is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
+bool blend_in_circle(const Face& f, const Face& g) {
+  return is_plane(f.surface) != is_plane(g.surface) &&
+         rim_circle(f, g, Eigen::Vector3d::Zero()).has_value();
 }
 
-bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x) {
-  for (int step = 0; step < 3; ++step) {
-    const double df = signed_distance_mm(f.surface, x);
-    const double dg = signed_distance_mm(g.surface, x);
-    const Eigen::Vector3d nf = distance_gradient(f.surface, x);
-    const Eigen::Vector3d ng = distance_gradient(g.surface, x);
-    const double cosine = nf.dot(ng);
-    const double determinant = 1.0 - cosine * cosine;
-    if (!(determinant > kTangent)) return false;
-    if (std::abs(df) <= kOnCurve_mm && std::abs(dg) <= kOnCurve_mm) return true;
-    x -= nf * ((df - cosine * dg) / determinant) + ng * ((dg - cosine * df) / determinant);
+Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTriangle& t,
+                           std::size_t i) {
+  const Eigen::Vector3d middle = 0.5 * (t.corners[i] + t.corners[(i + 1) % 3]);
+  const bool both = is_exact(face) && is_exact(beyond);
+  if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return {0.0, 0.0, 0.0};
+  if (t.edges[i] == EdgeShape::Blend) {
+    const auto circle = rim_circle(face, beyond, t.corners[i]);
+    const Eigen::Vector3d outward = from_axis(*circle, middle);
+    const double radius_mm = outward.norm();
+    if (radius_mm <= kOnAxis_mm) return {0.0, 0.0, 0.0};
+    return outward * (circle->radius_mm / radius_mm - 1.0);
   }
-  return true;
+  Eigen::Vector3d x = middle;
+  // Twice: the curve may be far off where the surfaces meet at a small angle.
+  if (to_intersection(face, beyond, x) && to_intersection(face, beyond, x)) return x - middle;
+  for (int step = 0; step < 8; ++step) {
+    x = closest_point(face.surface, closest_point(beyond.surface, x));
+  }
+  return x - middle;
+}
+
+bool is_chord(const CollisionModel& model, const ModelTriangle& t, std::size_t i) {
+  return t.slack_mm > 0.0 && t.edges[i] != EdgeShape::Inner && t.edges[i] != EdgeShape::Smooth &&
+         is_exact(model.face(t.face)) && is_exact(model.face(t.neighbours[i]));
 }
 
 TrianglePoint closest_on_triangle(const std::array<Eigen::Vector3d, 3>& corners,

@@ -31,9 +31,12 @@ inline bool is_exact(const Face& face) {
   return !std::holds_alternative<OtherSurface>(face.surface);
 }
 
-/// Moves `x` to the nearest point that lies on both surfaces, by Newton steps of least length.
-/// False where they are tangent there.
-bool to_intersection(const Face& f, const Face& g, Eigen::Vector3d& x);
+/// Whether a plane and a face of revolution that meet smoothly do so along a circle.
+bool blend_in_circle(const Face& f, const Face& g);
+
+/// From the middle of edge `i` of a facet of `face` to the exact rim with the face `beyond` it.
+Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTriangle& t,
+                           std::size_t i);
 
 /// True where edge `i` is the chord of a curve in which two exact faces meet.
 bool is_chord(const CollisionModel& model, const ModelTriangle& triangle, std::size_t i);

@@ -56,6 +56,12 @@ std::vector<std::array<std::uint32_t, 3>> triangle_neighbours(const FacetedSolid
   return result;
 }
 
+/// Whether a corner is the tip of a cone, where it has no one normal.
+bool is_apex(const Face& face, const Eigen::Vector3d& corner) {
+  const auto* cone = std::get_if<ConeSurface>(&face.surface);
+  return cone != nullptr && (corner - cone->apex).norm() <= kCoincident_mm;
+}
+
 EdgeShape edge_shape(const FacetedSolid& solid, std::uint32_t t, std::uint32_t beyond,
                      const Eigen::Vector3d& normal, std::size_t edge) {
   if (solid.face_of[t] == solid.face_of[beyond]) return EdgeShape::Inner;
@@ -70,13 +76,19 @@ EdgeShape edge_shape(const FacetedSolid& solid, std::uint32_t t, std::uint32_t b
   const Eigen::Vector3d& a = solid.vertices[from];
   const Eigen::Vector3d along = (solid.vertices[to] - a).normalized();
   if (is_exact(face) && is_exact(face_beyond)) {
-    // Facets of a curved face meet a tangent plane at an angle; the exact faces do not.
-    const Eigen::Vector3d middle = 0.5 * (a + solid.vertices[to]);
-    const Eigen::Vector3d n = outward_normal(face, middle);
-    const Eigen::Vector3d n_beyond = outward_normal(face_beyond, middle);
-    const double sine = n.cross(n_beyond).dot(along);
+    // Facets of a curved face meet a tangent plane at an angle; the exact faces do not, on the rim.
+    double sine = 0.0;
+    bool is_ahead = false;
+    for (const Eigen::Vector3d& end : {a, solid.vertices[to]}) {
+      if (is_apex(face, end) || is_apex(face_beyond, end)) continue;
+      const Eigen::Vector3d n = outward_normal(face, end);
+      const Eigen::Vector3d n_beyond = outward_normal(face_beyond, end);
+      const double sine_here = n.cross(n_beyond).dot(along);
+      if (std::abs(sine_here) > std::abs(sine)) sine = sine_here;
+      is_ahead = is_ahead || n.dot(n_beyond) > 0.0;
+    }
     if (std::abs(sine) > kSmoothSine) return sine > 0.0 ? EdgeShape::Convex : EdgeShape::Concave;
-    if (n.dot(n_beyond) > 0.0) return EdgeShape::Smooth;
+    if (is_ahead) return blend_in_circle(face, face_beyond) ? EdgeShape::Blend : EdgeShape::Smooth;
   }
   const Eigen::Vector3d away = solid.vertices[opposite] - a;
   const double height = normal.dot(away);
@@ -87,21 +99,6 @@ EdgeShape edge_shape(const FacetedSolid& solid, std::uint32_t t, std::uint32_t b
                                                : EdgeShape::Concave;
   }
   return height < 0.0 ? EdgeShape::Convex : EdgeShape::Concave;
-}
-
-/// From the middle of edge `i` to the exact rim.
-Eigen::Vector3d rim_offset(const Face& face, const Face& beyond, const ModelTriangle& t,
-                           std::size_t i) {
-  const Eigen::Vector3d middle = 0.5 * (t.corners[i] + t.corners[(i + 1) % 3]);
-  const bool both = is_exact(face) && is_exact(beyond);
-  if (!both || (is_plane(face.surface) && is_plane(beyond.surface))) return {0.0, 0.0, 0.0};
-  Eigen::Vector3d x = middle;
-  // Twice: the curve may be far off where the surfaces meet at a small angle.
-  if (to_intersection(face, beyond, x) && to_intersection(face, beyond, x)) return x - middle;
-  for (int step = 0; step < 8; ++step) {
-    x = closest_point(face.surface, closest_point(beyond.surface, x));
-  }
-  return x - middle;
 }
 
 /// How far the exact face can stand off the inside of a facet along x, y and z: a cylinder does so
@@ -186,7 +183,7 @@ std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
       t.beyond[edge] = beyond;
       t.neighbours[edge] = solid.face_of[beyond];
       t.edges[edge] = edge_shape(solid, i, beyond, t.normal, edge);
-      if (t.edges[edge] == EdgeShape::Convex || t.edges[edge] == EdgeShape::Concave) {
+      if (t.edges[edge] != EdgeShape::Inner && t.edges[edge] != EdgeShape::Smooth) {
         const Eigen::Vector3d offset =
             kRimAllowance * rim_offset(face, solid.faces[t.neighbours[edge]], t, edge);
         t.slack_mm = std::max(t.slack_mm, offset.norm());

@@ -95,6 +95,68 @@ TEST_CASE("the distance from coarse solids of revolution is that from their prof
   CHECK(outside > 300);
 }
 
+TEST_CASE("the distance from a coarse solid with a fillet is that from its profile", "[property]") {
+  // A right angle, convex or concave, whose fillet blends into plane and cylinder.
+  struct Filleted {
+    Profile profile;
+    std::size_t corner;
+    bool is_convex;
+  };
+  const auto filleted =
+      GENERATE(Filleted{{{0, 0}, {10, 0}, {10, 30}, {0, 30}}, 1, true},
+               Filleted{{{0, 0}, {10, 0}, {10, 30}, {0, 30}}, 2, true},
+               Filleted{{{0, 0}, {14, 0}, {14, 6}, {6, 6}, {6, 25}, {0, 25}}, 3, false});
+  const auto radius_mm = GENERATE(0.5, 2.0, 4.0);
+  const auto segments = GENERATE(16U, 24U, 31U);
+  const auto bands = GENERATE(2U, 5U);
+  const auto& [profile, corner, is_convex] = filleted;
+  CAPTURE(profile.size(), corner, radius_mm, segments, bands);
+  const CollisionModel model(std::make_shared<const FacetedSolid>(testing::revolved_with_fillet(
+                                 profile, corner, radius_mm, bands, segments)),
+                             {});
+  const Eigen::Vector2d in = radius_mm * (profile[corner - 1] - profile[corner]).normalized();
+  const Eigen::Vector2d out = radius_mm * (profile[corner + 1] - profile[corner]).normalized();
+  const Eigen::Vector2d center = profile[corner] + in + out;
+  // Signed distance from the solid: the sharp profile, but for the square that the fillet is in.
+  const auto truth_at = [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector2d q(p.head<2>().norm(), p.z());
+    const Eigen::Vector2d d = q - center;
+    const bool faces_fillet = d.dot(in) <= 0.0 && d.dot(out) <= 0.0;
+    const double beyond_mm = d.norm() - radius_mm;
+    double sharp = distance_from(profile, p);
+    if (faces_fillet && d.dot(in) >= -in.squaredNorm() && d.dot(out) >= -out.squaredNorm()) {
+      sharp = (beyond_mm > 0.0) == is_convex ? 1.0 : -1.0;  // its sign alone
+    }
+    Profile left = profile;  // the pieces that the fillet leaves
+    double least = faces_fillet ? std::abs(beyond_mm) : std::numeric_limits<double>::infinity();
+    left[corner] += in;
+    left.insert(left.begin() + static_cast<std::ptrdiff_t>(corner) + 1, profile[corner] + out);
+    for (std::size_t i = 0; i + 1 < left.size(); ++i) {
+      if (i == corner) continue;
+      const Eigen::Vector2d edge = left[i + 1] - left[i];
+      const double share = std::clamp((q - left[i]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
+      least = std::min(least, (q - left[i] - share * edge).norm());
+    }
+    return sharp < 0.0 ? -least : least;
+  };
+  testing::RandomGeometry random(23);
+  for (int i = 0; i < 2'000; ++i) {
+    // About the fillet and its rims; some far off.
+    const double along = random.uniform(-0.2, 1.2) * 0.5 * std::numbers::pi;
+    const Eigen::Vector2d on = center - std::sin(along) * in - std::cos(along) * out;
+    const double angle = random.uniform(0.0, 6.3);
+    const double reach_mm = std::pow(10.0, random.uniform(-4.0, 1.3));
+    const Eigen::Vector3d p =
+        Eigen::Vector3d(on.x() * std::cos(angle), on.x() * std::sin(angle), on.y()) +
+        random.point(reach_mm);
+    const double truth = truth_at(p);
+    const auto near = model.nearest(p);
+    CAPTURE(p.transpose(), truth, near.distance_mm, near.inside);
+    if (std::abs(truth) > 1e-9) REQUIRE(near.inside == (truth < 0.0));
+    REQUIRE(std::abs(near.distance_mm - std::abs(truth)) < 1e-6);
+  }
+}
+
 TEST_CASE("a conical head over its seat is clear by its gap, however coarse the facets") {
   const auto segments = GENERATE(8U, 11U, 18U, 24U, 48U);
   const auto gap_mm = GENERATE(0.02, 0.03, 0.2);

@@ -97,6 +97,21 @@ inline FacetedSolid prism(const std::vector<Eigen::Vector2d>& polygon, double he
   return builder.finish();
 }
 
+namespace detail {
+
+/// What the piece of a profile from `a` to `b`, points (r, z), makes about the z axis.
+inline Surface surface_of_piece(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (a.y() == b.y())
+    return PlaneSurface{{0.0, 0.0, a.y()}, {0.0, 0.0, b.x() > a.x() ? -1.0 : 1.0}};
+  if (a.x() == b.x()) return CylinderSurface{{0.0, 0.0, a.y()}, Eigen::Vector3d::UnitZ(), a.x()};
+  const double slope = (b.x() - a.x()) / (b.y() - a.y());
+  return ConeSurface{{0.0, 0.0, a.y() - a.x() / slope},
+                     {0.0, 0.0, slope > 0.0 ? 1.0 : -1.0},
+                     std::atan(std::abs(slope))};
+}
+
+}  // namespace detail
+
 /// The half-plane outline of a body of revolution, turned about z. `profile`: points (r, z) with
 /// the material on the left; from the axis to the axis, or closed (a tube) where it does not touch
 /// it. One face for each piece of it, pieces along the axis excepted, in order.
@@ -123,17 +138,7 @@ inline FacetedSolid revolved(const std::vector<Eigen::Vector2d>& profile, std::u
     const Eigen::Vector2d& b = profile[j];
     if (a.x() == 0.0 && b.x() == 0.0) continue;
     const double area_mm2 = std::numbers::pi * (a.x() + b.x()) * (b - a).norm();
-    Surface surface;
-    if (a.y() == b.y()) {
-      surface = PlaneSurface{{0.0, 0.0, a.y()}, {0.0, 0.0, b.x() > a.x() ? -1.0 : 1.0}};
-    } else if (a.x() == b.x()) {
-      surface = CylinderSurface{{0.0, 0.0, a.y()}, Eigen::Vector3d::UnitZ(), a.x()};
-    } else {
-      const double slope = (b.x() - a.x()) / (b.y() - a.y());
-      surface = ConeSurface{{0.0, 0.0, a.y() - a.x() / slope},
-                            {0.0, 0.0, slope > 0.0 ? 1.0 : -1.0},
-                            std::atan(std::abs(slope))};
-    }
+    const Surface surface = detail::surface_of_piece(a, b);
     faces[i] = builder.face(surface, area_mm2, !is_plane(surface) && b.y() < a.y());
     builder.band(faces[i], rings[i], rings[j]);
   }
@@ -145,6 +150,52 @@ inline FacetedSolid revolved(const std::vector<Eigen::Vector2d>& profile, std::u
         detail::turn_convexity(profile[i] - profile[before], profile[(i + 1) % n] - profile[i]);
     builder.circle_edge(faces[before], faces[i], convexity, {0.0, 0.0, profile[i].y()},
                         profile[i].x(), rings[i][0]);
+  }
+  return builder.finish();
+}
+
+/// The same, from the axis to the axis, with the right angle at point `corner` rounded by a torus
+/// of `bands` rows of facets. Without edges.
+inline FacetedSolid revolved_with_fillet(const std::vector<Eigen::Vector2d>& profile,
+                                         std::size_t corner, double radius_mm, std::uint32_t bands,
+                                         std::uint32_t segments) {
+  detail::Builder builder;
+  const auto ring = [&](const Eigen::Vector2d& p) {
+    return p.x() > 0.0 ? builder.ring(Eigen::Vector2d::Zero(), p.y(), p.x(), segments, 0.0)
+                       : std::vector<std::uint32_t>{builder.vertex({0.0, 0.0, p.y()})};
+  };
+  const Eigen::Vector2d in = radius_mm * (profile[corner - 1] - profile[corner]).normalized();
+  const Eigen::Vector2d out = radius_mm * (profile[corner + 1] - profile[corner]).normalized();
+  const Eigen::Vector2d center = profile[corner] + in + out;
+  const TorusSurface torus{{0.0, 0.0, center.y()}, Eigen::Vector3d::UnitZ(), center.x(), radius_mm};
+  std::vector<std::uint32_t> last = ring(profile.front());
+  Eigen::Vector2d from = profile.front();
+  const auto go_to = [&](const Eigen::Vector2d& p) {
+    const Surface surface = detail::surface_of_piece(from, p);
+    const std::vector<std::uint32_t> next = ring(p);
+    builder.band(builder.face(surface, std::numbers::pi * (from + p).x() * (p - from).norm(),
+                              !is_plane(surface) && p.y() < from.y()),
+                 last, next);
+    last = next;
+    from = p;
+  };
+  for (std::size_t i = 1; i < profile.size(); ++i) {
+    if (i != corner) {
+      go_to(profile[i]);
+      continue;
+    }
+    go_to(profile[corner] + in);
+    const bool is_reversed = in.x() * out.y() - in.y() * out.x() > 0.0;
+    const double area_mm2 = std::numbers::pi * std::numbers::pi * center.x() * radius_mm;
+    const std::uint32_t face = builder.face(torus, area_mm2, is_reversed);
+    for (std::uint32_t k = 1; k <= bands; ++k) {
+      const double angle = 0.5 * std::numbers::pi * k / bands;
+      from = k < bands ? Eigen::Vector2d(center - std::sin(angle) * in - std::cos(angle) * out)
+                       : Eigen::Vector2d(profile[corner] + out);
+      const std::vector<std::uint32_t> next = ring(from);
+      builder.band(face, last, next);
+      last = next;
+    }
   }
   return builder.finish();
 }
