@@ -10,7 +10,6 @@
 #include "dowel/collision/silhouette.h"
 #include "dowel/kernel/check.h"
 #include "judge.h"
-#include "kept_contact.h"
 #include "scene_impl.h"
 
 namespace dowel {
@@ -261,8 +260,7 @@ bool CollisionScene::Impl::meet(Mover& mover, Candidate& candidate, const QueryO
 bool CollisionScene::Impl::judge_candidate(Mover& mover, Candidate& candidate, bool met,
                                            const QueryOptions& options, PairVerdict& verdict) {
   const Body& other = bodies[candidate.id.value];
-  if (candidate.memory.may_rest() && still_rests({mover.element->model(), mover.rotation_WB,
-                                                  mover.X_WB.translation(), mover.box_W()},
+  if (candidate.memory.may_rest() && still_rests(mover.placed(),
                                                  {other.element->model(), candidate.rotation_WB,
                                                   other.X_WB.translation(), candidate.obb_W},
                                                  options, candidate.memory, counters, verdict)) {

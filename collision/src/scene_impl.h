@@ -8,6 +8,7 @@
 
 #include "dowel/collision/layered_projection.h"
 #include "dowel/collision/scene.h"
+#include "kept_contact.h"
 #include "narrow_phase.h"
 
 // What a scene is made of. Private to collision.
@@ -66,7 +67,7 @@ struct CollisionScene::Impl {
     double radius_mm = 0.0;  // of the box's corners about its centre
     Pose X_WB;
     Obb obb_W;                    // but for the axes while `axes_are_old`
-    Eigen::Matrix3d rotation_WB;  // but while `axes_are_old`
+    Eigen::Matrix3d rotation_WB;  // of a body whose box is not upright, but while `axes_are_old`
     double way_mm = 0.0;
     double listed_until = -1.0;  // nothing but the candidates is met while the way is below this
     double clear_until = -1.0;   // nothing at all
@@ -79,15 +80,20 @@ struct CollisionScene::Impl {
     /// The box at the pose asked about. Most moves do not need its axes.
     const Obb& box_W() {
       if (axes_are_old) {
-        rotation_WB = X_WB.rotation_matrix();
         if (box_is_upright) {
-          obb_W.axes = rotation_WB;
+          obb_W.axes = X_WB.rotation_matrix();
         } else {
+          rotation_WB = X_WB.rotation_matrix();
           obb_W.axes = rotation_WB * element->obb().axes;
         }
         axes_are_old = false;
       }
       return obb_W;
+    }
+    /// The body at that pose.
+    PlacedModel placed() {
+      const Obb& box = box_W();
+      return {element->model(), box_is_upright ? box.axes : rotation_WB, X_WB.translation(), box};
     }
   };
 

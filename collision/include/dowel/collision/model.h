@@ -39,8 +39,8 @@ struct NodeBox {
   alignas(16) std::array<float, 4> half{0.0F, 0.0F, 0.0F, kNever};
 };
 
-/// How the two triangles at an edge meet. Blend: smoothly, a plane and a face of revolution, along a
-/// circle, as at a fillet.
+/// How the two triangles at an edge meet. Blend: smoothly, a plane and a face of revolution, along
+/// a circle, as at a fillet.
 enum class EdgeShape : std::uint8_t { Inner, Convex, Concave, Smooth, Blend };
 
 /// A facet and what is needed to correct it to the exact faces.
