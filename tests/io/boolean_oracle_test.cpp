@@ -18,6 +18,7 @@
 #include "library/builders.h"
 #include "oracle_shapes.h"
 #include "random_geometry.h"
+#include "real_shapes.h"
 
 namespace dowel::testing {
 namespace {
@@ -313,15 +314,15 @@ Pool made_pool(RandomGeometry& random) {
   return pool;
 }
 
-/// Elements of the library with no more faces than `max_faces`; pins go into the made plate.
-Pool library_pool(const std::vector<library::Part>& parts, int max_faces) {
+/// Those with no more faces than `max_faces`; pins go into the made plate.
+Pool pool_of(std::vector<NamedShape> shapes, int max_faces, double deflection_mm) {
   Pool pool;
-  for (const library::Part& part : parts) {
+  for (NamedShape& shape : shapes) {
     TopTools_IndexedMapOfShape faces;
-    TopExp::MapShapes(part.solid, TopAbs_FACE, faces);
+    TopExp::MapShapes(shape.shape, TopAbs_FACE, faces);
     if (faces.Extent() > max_faces) continue;
-    pool.push_back(std::make_shared<const Solid>(NamedShape{part.name, part.solid, {}},
-                                                 std::initializer_list<double>{0.0}));
+    pool.push_back(std::make_shared<const Solid>(std::move(shape),
+                                                 std::initializer_list<double>{deflection_mm}));
   }
   pool.push_back(std::make_shared<const Solid>(holed_plate(20.0, 6.0),
                                                std::initializer_list<double>{kCoarse_mm}));
@@ -362,7 +363,8 @@ TEST_CASE("verdicts are those of OpenCascade's Booleans", "[property]") {
                            library::rest_pads, library::spacers}) {
     for (library::Part& part : make(h40)) parts.push_back(std::move(part));
   }
-  check_pairs(random, library_pool(parts, 40), kPairs / 4, tally);
+  check_pairs(random, pool_of(library_shapes(parts), 40, 0.0), kPairs / 5, tally);
+  check_pairs(random, pool_of(real_shapes(DOWEL_SHARED_STEP), 60, kFine_mm), kPairs / 10, tally);
   report(tally);
 }
 
@@ -372,7 +374,10 @@ TEST_CASE("two thousand verdicts are those of OpenCascade's Booleans", "[.slow]"
   for (int i = 0; i < 10; ++i) {
     check_pairs(random, made_pool(random), kSlowPairs * 7 / 100, tally);
   }
-  check_pairs(random, library_pool(library::all_parts(), 60), kSlowPairs * 3 / 10, tally);
+  check_pairs(random, pool_of(library_shapes(library::all_parts()), 60, 0.0), kSlowPairs / 5,
+              tally);
+  check_pairs(random, pool_of(real_shapes(DOWEL_SHARED_STEP), 90, kFine_mm), kSlowPairs / 10,
+              tally);
   report(tally);
   CHECK(tally.judged[Verdict::Clear] + tally.judged[Verdict::Contact] +
             tally.judged[Verdict::Interference] >=
