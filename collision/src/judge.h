@@ -118,9 +118,22 @@ class Judge {
   /// Whether the exact faces behind two facets come within the tolerance there.
   bool touches(const NarrowScratch::FacetPair& near);
 
-  /// Projects to and fro between the exact faces behind two facets: both ends are real places of
-  /// the boundary.
-  bool is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b);
+  /// Whether the exact faces behind two facets are found within the tolerance of each other, both
+  /// places of the boundary, from `on_b` on.
+  bool is_between_faces(std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& on_b);
+
+  /// Places of two faces and their distance.
+  struct FaceGap {
+    Eigen::Vector3d on_a_A;
+    Eigen::Vector3d on_a_B;
+    Eigen::Vector3d on_b;
+    double gap_mm;
+  };
+
+  /// Projects to and fro between the exact faces behind two facets until they are within the
+  /// tolerance or come no nearer.
+  std::optional<FaceGap> gap_between_faces(std::uint32_t i, std::uint32_t j,
+                                           Eigen::Vector3d on_b) const;
 
   // Interference.
 

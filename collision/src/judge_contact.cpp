@@ -168,22 +168,27 @@ bool Judge::touches(const NarrowScratch::FacetPair& near) {
   return false;
 }
 
-bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d on_b) {
-  double least = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d last_end = Eigen::Vector3d::Zero();
+bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, const Eigen::Vector3d& on_b) {
+  const auto gap = gap_between_faces(i, j, on_b);
+  if (!gap || gap->gap_mm > options_.tolerance_mm) return false;
+  contact_.touch(i, gap->on_a_A, gap->on_a_B, j, gap->on_b);
+  return true;
+}
+
+std::optional<Judge::FaceGap> Judge::gap_between_faces(std::uint32_t i, std::uint32_t j,
+                                                       Eigen::Vector3d on_b) const {
+  std::optional<FaceGap> least;
   Eigen::Vector3d last_way = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_end = Eigen::Vector3d::Zero();
   for (int step = 0; step < kProjections; ++step) {
     const FacePoint near_a = nearest_on_patch(pair_.a, i, X_AB_ * on_b);
     const Eigen::Vector3d on_a = pair_.X_BA * near_a.point;
     const FacePoint near_b = nearest_on_patch(pair_.b, j, on_a);
-    if (!std::isfinite(near_a.distance_squared_mm2 + near_b.distance_squared_mm2)) return false;
+    if (!std::isfinite(near_a.distance_squared_mm2 + near_b.distance_squared_mm2)) return least;
     const double gap = std::sqrt(near_b.distance_squared_mm2);
-    if (gap <= options_.tolerance_mm) {
-      contact_.touch(i, near_a.point, on_a, j, near_b.point);
-      return true;
-    }
-    if (step > 1 && least - gap < kProjectionGain * options_.tolerance_mm) return false;
-    least = std::min(least, gap);
+    const bool is_gain = !least || least->gap_mm - gap >= kProjectionGain * options_.tolerance_mm;
+    if (!least || gap < least->gap_mm) least = FaceGap{near_a.point, on_a, near_b.point, gap};
+    if (gap <= options_.tolerance_mm || (step > 1 && !is_gain)) break;
     // A wide rim near a plane goes a share of gap by radius of its way in each step: where the way
     // changes as it did in the last one, it ends here.
     const Eigen::Vector3d way = near_b.point - on_b;
@@ -196,7 +201,7 @@ bool Judge::is_between_faces(std::uint32_t i, std::uint32_t j, Eigen::Vector3d o
     last_end = near_b.point;
     last_way = way;
   }
-  return false;
+  return least;
 }
 
 }  // namespace dowel

@@ -18,6 +18,9 @@ constexpr std::array<double, 3> kFractions{0.5, 0.02, 0.98};
 /// facets may be anywhere along them, the length of the shorter one and what they stand off more.
 constexpr double kReachTolerances = 64.0;
 
+/// Facets further off their faces than this, in tolerances, say little of where these meet.
+constexpr double kCoarseTolerances = 16.0;
+
 /// A pose at which cores are asked in vain costs as much as some tens that find the ball again.
 constexpr int kMostPosesWithoutCores = 31;
 
@@ -139,6 +142,11 @@ bool Judge::crosses(const NarrowScratch::FacetPair& near, const PlacedTriangle& 
   const Eigen::Vector3d middle = 0.5 * (near.on_a_B + near.on_b);
   if (no_witness_from_.knows(a.face, b.face, middle)) return false;
   if (try_start(middle, near.a, near.b, reach)) return true;
+  // Where facets are this far off their faces, so may be the middle between them.
+  if (a.slack_mm + b.slack_mm > kCoarseTolerances * options_.tolerance_mm) {
+    const auto gap = gap_between_faces(near.a, near.b, near.on_b);
+    if (gap && try_start(0.5 * (gap->on_a_B + gap->on_b), near.a, near.b, reach)) return true;
+  }
   no_witness_from_.add(a.face, b.face, middle);
   return false;
 }

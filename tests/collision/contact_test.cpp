@@ -142,6 +142,31 @@ TEST_CASE("a fine ball in a coarse one interferes as deep as they are", "[proper
   }
 }
 
+TEST_CASE("a tip in a coarse ball interferes as deep as they are", "[property]") {
+  testing::RandomGeometry random(18);
+  const double t = 0.01;
+  for (int i = 0; i < 100; ++i) {
+    const double radius = random.uniform(20, 60);
+    const double half_angle = random.uniform(0.3, 1.2);
+    const double height = random.uniform(2, 10);
+    const Case c{"",
+                 testing::cone(height * std::tan(half_angle), height, 24),
+                 testing::sphere(radius, 10 + random.index(8)),
+                 {}};
+    const Eigen::Vector3d axis = random.direction();
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -axis);
+    const auto at = [&](double depth) {
+      return Pose(turn, (radius + height - tip_height(depth, half_angle)) * axis);
+    };
+    CAPTURE(i, radius, half_angle, height);
+    const Pose X_WB = random.pose(1000);
+    CHECK(verdict_at(c, at(-1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(verdict_at(c, at(0.9 * t), X_WB, t) == Verdict::Contact);
+    CHECK(verdict_at(c, at(1.1 * t), X_WB, t) == Verdict::Interference);
+    CHECK(verdict_at(c, at(2.0 * t), X_WB, t) == Verdict::Interference);
+  }
+}
+
 TEST_CASE("a pin in its hole is judged by the exact cylinders, not by the facets", "[property]") {
   testing::RandomGeometry random(13);
   const double t = 0.001;
