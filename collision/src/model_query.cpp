@@ -31,6 +31,9 @@ constexpr std::array<std::array<double, 3>, 8> kRays{{{0.27, 0.53, 0.81},
                                                       {-0.57, 0.73, -0.39},
                                                       {-0.73, -0.41, -0.53}}};
 
+/// Boundaries of two solids closer than this are as near to a point: rounding.
+constexpr double kTouching_mm = 1e-9;
+
 double distance_squared(const BvhNode& node, const Eigen::Vector3d& p) {
   return (node.min - p).cwiseMax(p - node.max).cwiseMax(0.0).squaredNorm();
 }
@@ -91,33 +94,9 @@ std::optional<int> exits(const CollisionModel& model, const Eigen::Vector3d& ori
 
 constexpr std::uint32_t kNoTriangle = std::numeric_limits<std::uint32_t>::max();
 
-/// What is nearest so far.
-struct Best {
-  FacePoint place;
-  std::uint32_t triangle = 0;
-
-  Best() { place.distance_squared_mm2 = std::numeric_limits<double>::infinity(); }
-  void look_at(const CollisionModel& model, std::uint32_t t, const Eigen::Vector3d& p) {
-    const ModelTriangle& facet = model.triangles()[t];
-    const double height = facet.normal.dot(p - facet.corners[0]);
-    const double above = std::max(std::abs(height) - facet.normal_slack_mm, 0.0);
-    if (above * above > place.distance_squared_mm2) return;
-    const auto& [a, b, c] = facet.corners;
-    const double beside =
-        (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).maxCoeff() -
-        facet.slack_mm;
-    if (beside > 0.0 && beside * beside > place.distance_squared_mm2) return;
-    const FacePoint candidate = nearest_on_patch(model, t, p, place.distance_squared_mm2);
-    if (candidate.distance_squared_mm2 < place.distance_squared_mm2) {
-      place = candidate;
-      triangle = t;
-    }
-  }
-};
-
-bool is_inside(const CollisionModel& model, const Best& best, const Eigen::Vector3d& p) {
-  const ModelTriangle& t = model.triangles()[best.triangle];
-  switch (best.place.place) {
+bool is_inside(const CollisionModel& model, const FacePoint& place, std::uint32_t triangle,
+               const Eigen::Vector3d& p) {
+  switch (place.place) {
     case FacePoint::Place::ConvexRim:
       return false;
     case FacePoint::Place::ConcaveRim:
@@ -127,14 +106,56 @@ bool is_inside(const CollisionModel& model, const Best& best, const Eigen::Vecto
     case FacePoint::Place::Face:
       break;
   }
+  const ModelTriangle& t = model.triangles()[triangle];
   const Face& face = model.face(t.face);
   if (is_exact(face)) return outward_distance_mm(face, p) < 0.0;
-  return t.normal.dot(p - best.place.point) < 0.0;
+  return t.normal.dot(p - place.point) < 0.0;
 }
 
+/// What is nearest so far. Where solids of one element touch, the boundary of either is as near: of
+/// the one that the point is in it is taken.
+struct Best {
+  FacePoint place;
+  std::uint32_t triangle = kNoTriangle;
+  double limit_squared_mm2 = std::numeric_limits<double>::infinity();  ///< what is beyond is no use
+
+  void look_at(const CollisionModel& model, std::uint32_t t, const Eigen::Vector3d& p) {
+    const ModelTriangle& facet = model.triangles()[t];
+    const double height = facet.normal.dot(p - facet.corners[0]);
+    const double above = std::max(std::abs(height) - facet.normal_slack_mm, 0.0);
+    if (above * above > limit_squared_mm2) return;
+    const auto& [a, b, c] = facet.corners;
+    const double beside =
+        (a.cwiseMin(b).cwiseMin(c) - p).cwiseMax(p - a.cwiseMax(b).cwiseMax(c)).maxCoeff() -
+        facet.slack_mm;
+    if (beside > 0.0 && beside * beside > limit_squared_mm2) return;
+    const FacePoint candidate = nearest_on_patch(model, t, p, limit_squared_mm2);
+    if (candidate.distance_squared_mm2 >= limit_squared_mm2) return;
+    if (model.solid_count() > 1 && is_as_near(candidate) &&
+        (is_inside(model, place, triangle, p) || !is_inside(model, candidate, t, p))) {
+      return;
+    }
+    place = candidate;
+    triangle = t;
+    limit_squared_mm2 = candidate.distance_squared_mm2;
+    if (model.solid_count() > 1) {
+      const double distance = std::sqrt(limit_squared_mm2) + kTouching_mm;
+      limit_squared_mm2 = distance * distance;
+    }
+  }
+
+ private:
+  bool is_as_near(const FacePoint& candidate) const {
+    return triangle != kNoTriangle &&
+           std::abs(std::sqrt(candidate.distance_squared_mm2) -
+                    std::sqrt(place.distance_squared_mm2)) <= kTouching_mm;
+  }
+};
+
 NearestPoint to_result(const CollisionModel& model, const Best& best, const Eigen::Vector3d& p) {
-  return {best.place.point, std::sqrt(best.place.distance_squared_mm2), is_inside(model, best, p),
-          best.triangle, best.place.place == FacePoint::Place::Face};
+  return {best.place.point, std::sqrt(best.place.distance_squared_mm2),
+          is_inside(model, best.place, best.triangle, p), best.triangle,
+          best.place.place == FacePoint::Place::Face};
 }
 
 void search(const CollisionModel& model, const Eigen::Vector3d& point, Best& best) {
@@ -148,7 +169,7 @@ void search(const CollisionModel& model, const Eigen::Vector3d& point, Best& bes
   stack[depth++] = {0, distance_squared(model.nodes()[0], point)};
   while (depth > 0) {
     const Entry entry = stack[--depth];
-    if (entry.distance_squared >= best.place.distance_squared_mm2) continue;
+    if (entry.distance_squared >= best.limit_squared_mm2) continue;
     const BvhNode& node = model.nodes()[entry.node];
     if (node.is_leaf()) {
       for (std::uint32_t i = 0; i < node.count; ++i) best.look_at(model, node.first + i, point);
@@ -173,8 +194,7 @@ NearestPoint CollisionModel::nearest(const Eigen::Vector3d& point) const {
 std::optional<NearestPoint> CollisionModel::nearest_within(const Eigen::Vector3d& point,
                                                            double radius_mm) const {
   Best best;
-  best.place.distance_squared_mm2 = radius_mm * radius_mm;
-  best.triangle = kNoTriangle;
+  best.limit_squared_mm2 = radius_mm * radius_mm;
   search(*this, point, best);
   if (best.triangle == kNoTriangle) return std::nullopt;
   return to_result(*this, best, point);

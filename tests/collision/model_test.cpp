@@ -246,3 +246,27 @@ TEST_CASE("an open mesh is refused") {
   open.face_of.pop_back();
   CHECK_THROWS_AS(model_of(open), dowel::Error);
 }
+
+TEST_CASE("a point by the wall where two solids of one element touch is inside") {
+  // A pin in its bore, without play, and a block beside the plate.
+  const CollisionModel model = model_of(
+      testing::merged(testing::merged(testing::plate_with_holes({40, 40, 20}, {{0, 0, 6.0}}, 16),
+                                      testing::cylinder(6.0, 20.0, 21, 0.1)),
+                      testing::transformed(dowel::Pose::from_translation({25, 0, 10}),
+                                           testing::box({10, 36, 20}))));
+  testing::RandomGeometry random(62);
+  for (int i = 0; i < 2'000; ++i) {
+    const double angle = random.uniform(0.0, 6.3);
+    const double off_mm = random.uniform(-1.0, 1.0);
+    const double z = random.uniform(2.0, 18.0);
+    const Eigen::Vector3d by_bore((6.0 + off_mm) * std::cos(angle),
+                                  (6.0 + off_mm) * std::sin(angle), z);
+    const Eigen::Vector3d by_block(20.0 + off_mm, random.uniform(-15.0, 15.0), z);
+    for (const Eigen::Vector3d& p : {by_bore, by_block}) {
+      CAPTURE(i, off_mm, p.transpose());
+      const auto near = model.nearest(p);
+      REQUIRE(near.inside);
+      REQUIRE(near.distance_mm == Approx(std::abs(off_mm)).margin(2e-9));
+    }
+  }
+}

@@ -113,6 +113,7 @@ class CollisionModel {
   std::span<const NodeBox> node_boxes() const noexcept { return node_boxes_; }  ///< by node
   std::span<const ModelTriangle> triangles() const noexcept { return triangles_; }
   const Face& face(std::uint32_t index) const { return solid_->faces[index]; }
+  std::uint32_t solid_count() const noexcept { return solid_->solid_count; }
   std::uint32_t face_count() const { return static_cast<std::uint32_t>(solid_->faces.size()); }
 
   /// Chords of the same face between which and their arcs a part of triangle `index` may lie: there
