@@ -112,10 +112,11 @@ TEST_CASE("a rim that stands on a plane is judged by its circle, not by its chor
                   {0, 0, gap - lowest});
     };
     CAPTURE(i, radius, height, tilt);
+    PlacedCase placed(c);
     const Pose X_WB = random.pose(1000);
-    CHECK(PlacedCase(c).at(at(0.5 * t), X_WB, t) == Verdict::Contact);
-    CHECK(PlacedCase(c).at(at(0.0), X_WB, t) == Verdict::Contact);
-    CHECK(PlacedCase(c).at(at(1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(placed.at(at(0.5 * t), X_WB, t) == Verdict::Contact);
+    CHECK(placed.at(at(0.0), X_WB, t) == Verdict::Contact);
+    CHECK(placed.at(at(1.1 * t), X_WB, t) == Verdict::Clear);
   }
 }
 
@@ -134,11 +135,12 @@ TEST_CASE("a fine ball in a coarse one interferes as deep as they are", "[proper
       return Pose::from_translation((radius + small - depth) * random.direction());
     };
     CAPTURE(i, radius, small);
+    PlacedCase placed(c);
     const Pose X_WB = random.pose(1000);
-    CHECK(PlacedCase(c).at(at(-1.1 * t), X_WB, t) == Verdict::Clear);
-    CHECK(PlacedCase(c).at(at(0.9 * t), X_WB, t) == Verdict::Contact);
-    CHECK(PlacedCase(c).at(at(1.1 * t), X_WB, t) == Verdict::Interference);
-    CHECK(PlacedCase(c).at(at(2.0 * t), X_WB, t) == Verdict::Interference);
+    CHECK(placed.at(at(-1.1 * t), X_WB, t) == Verdict::Clear);
+    CHECK(placed.at(at(0.9 * t), X_WB, t) == Verdict::Contact);
+    CHECK(placed.at(at(1.1 * t), X_WB, t) == Verdict::Interference);
+    CHECK(placed.at(at(2.0 * t), X_WB, t) == Verdict::Interference);
   }
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("a walk over a face leads to the triangle that the point is over", "[p
   int walks = 0;
   int moved = 0;
   int arrived = 0;
-  while (walks < 20'000) {  // steps of a slide over the top
+  while (walks < kNearest) {  // steps of a slide over the top
     const Eigen::Vector3d from(random.uniform(-6, 6), random.uniform(-6, 6), 20.0);
     const Eigen::Vector3d to = from + random.point(1.0).cwiseProduct(Eigen::Vector3d(1, 1, 0));
     if (std::max(from.head<2>().norm(), to.head<2>().norm()) > 5.9) continue;
