@@ -99,12 +99,6 @@ Cases round_cases() {
   };
 }
 
-/// Height of a tip whose largest ball under a plane has diameter `depth`.
-double tip_height(double depth, double half_angle_rad) {
-  const double sine = std::sin(half_angle_rad);
-  return depth > 0 ? 0.5 * depth * (1.0 + sine) / sine : depth;
-}
-
 /// A wedge of `angle_rad` standing on its edge along x, tip at the origin.
 FacetedSolid tip_bar(double angle_rad, double flank_mm) {
   const Pose edge_along_x(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitY()) *
@@ -121,7 +115,7 @@ Cases tip_cases(double degrees) {
   const FacetedSolid upside_down = transformed(turned(pi, {1, 0, 0}, {0, 0, 0}), bar);
   return {
       {"wedge edge on a face" + of, bar, table(),
-       [angle](double d) { return lifted(-tip_height(d, angle / 2)); }, true},
+       [angle](double d) { return lifted(-tip_height_mm(d, angle / 2)); }, true},
       {"crossed edges" + of, bar, transformed(turned(pi, {1, 1, 0}, {0, 0, 0}), bar),
        [sine](double d) { return lifted(d > 0 ? -d / sine : -d); }, true},
       {"edge on edge" + of, bar, upside_down,
@@ -139,7 +133,7 @@ Cases tip_cases(double degrees) {
 Cases cone_cases() {
   const double half = std::atan2(8.0, 20.0);
   return {{"cone tip on a face", transformed(turned(pi, {1, 0, 0}, {0, 0, 20}), cone(8, 20, 32)),
-           table(), [half](double d) { return lifted(-tip_height(d, half)); }, true}};
+           table(), [half](double d) { return lifted(-tip_height_mm(d, half)); }, true}};
 }
 
 Cases slot_cases() {
@@ -193,6 +187,11 @@ Cases slot_cases() {
 }
 
 }  // namespace
+
+double tip_height_mm(double depth_mm, double half_angle_rad) {
+  const double sine = std::sin(half_angle_rad);
+  return depth_mm > 0 ? 0.5 * depth_mm * (1.0 + sine) / sine : depth_mm;
+}
 
 std::vector<ContactCase> contact_suite() {
   Cases result;

@@ -18,6 +18,10 @@ struct ContactCase {
   bool has_gap = false;              ///< it does so for gaps, too
 };
 
+/// How far a tip is below a plane when the largest ball in it has diameter `depth_mm`; a gap stays
+/// as it is.
+double tip_height_mm(double depth_mm, double half_angle_rad);
+
 /// How parts of fixtures touch: flat, along edges, in corners and tips, in slots and bores. All
 /// have rest at depth 0.
 std::vector<ContactCase> contact_suite();
