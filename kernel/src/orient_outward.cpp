@@ -125,8 +125,13 @@ std::vector<double> agreement_of_faces(const FacetedSolid& solid) {
     if (std::holds_alternative<OtherSurface>(face.surface)) continue;
     const std::array<Eigen::Vector3d, 3> corners = solid.corners(i);
     const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    const Eigen::Vector3d center = (corners[0] + corners[1] + corners[2]) / 3.0;
-    const double cosine = normal.dot(distance_gradient(face.surface, center));
+    // The corners are on the exact face; the middle of a coarse facet may be beyond a fillet's
+    // tube.
+    Eigen::Vector3d outward = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& corner : corners) {
+      outward += distance_gradient(face.surface, corner);
+    }
+    const double cosine = normal.dot(outward) / 3.0;
     result[solid.face_of[i]] += face.reversed ? -cosine : cosine;
   }
   return result;
