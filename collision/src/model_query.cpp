@@ -131,9 +131,10 @@ struct Best {
     if (beside > 0.0 && beside * beside > limit_squared_mm2) return;
     const FacePoint candidate = nearest_on_patch(model, t, p, limit_squared_mm2);
     if (candidate.distance_squared_mm2 >= limit_squared_mm2) return;
-    if (model.solid_count() > 1 && is_as_near(candidate) &&
-        (is_inside(model, place, triangle, p) || !is_inside(model, candidate, t, p))) {
-      return;
+    if (model.solid_count() > 1 && is_as_near(candidate)) {
+      const bool was_inside = is_inside(model, place, triangle, p);
+      const bool is_nearer = candidate.distance_squared_mm2 < place.distance_squared_mm2;
+      if (was_inside == is_inside(model, candidate, t, p) ? !is_nearer : was_inside) return;
     }
     place = candidate;
     triangle = t;
