@@ -32,6 +32,18 @@ std::vector<DrilledHole> mixed_holes() {
   return holes;
 }
 
+/// 20 long with round ends of radius 4, one of them with a bore of radius 2.
+std::vector<Outline> link() {
+  return {{{-6, -4}, {6, -4, std::numbers::pi}, {6, 4}, {-6, 4, std::numbers::pi}},
+          reversed(circle({6, 0}, 2.0, 0.3))};
+}
+
+/// Radius 5, height 12, with a bead of radius 2 about it and a rounded foot.
+Outline beaded_pin() {
+  return {{0, 0}, {4, 0, 0.5 * std::numbers::pi}, {5, 1}, {5, 4, std::numbers::pi}, {5, 8}, {5, 12},
+          {0, 12}};
+}
+
 std::vector<Sample> samples() {
   std::vector<Sample> result{{"box", box({1, 2, 3}, {5, 6, 7})},
                              {"cylinder", cylinder(3.0, 10.0, 64, 0.1)},
@@ -40,6 +52,8 @@ std::vector<Sample> samples() {
                              {"pin", stepped_pin({{3.0, 4.0}, {5.0, 2.0}, {2.0, 8.0}}, 48)},
                              {"wedge", wedge(0.3, 10.0, 5.0)},
                              {"sphere", sphere(5.0, 64)},
+                             {"link", extruded(link(), 3.0, 40)},
+                             {"beaded pin", revolved_outline(beaded_pin(), {.per_turn = 40})},
                              {"plate", plate_with_holes({200, 150, 30}, mixed_holes(), 48)},
                              {"coarse plate", plate_with_holes({200, 150, 30}, mixed_holes(), 5)},
                              {"plain plate", plate_with_holes({200, 150, 30}, {}, 48)},
@@ -110,11 +124,31 @@ TEST_CASE("edges of a plate with a counterbore are convex but for the floor's") 
   CHECK(circles == 4);
 }
 
+TEST_CASE("edges of a link with a bore are lines and arcs, smooth where its ends blend") {
+  const FacetedSolid solid = extruded(link(), 3.0, 40);
+  std::size_t smooth = 0;
+  double arcs_mm = 0.0;
+  for (const Edge& edge : solid.edges) {
+    if (edge.convexity == Convexity::Smooth) ++smooth;
+    if (edge.curve == CurveKind::Circle) arcs_mm += edge.length_mm;
+  }
+  CHECK(solid.edges.size() == 18);
+  CHECK(smooth == 6);  // four where an end begins, two in the bore
+  CHECK(arcs_mm == Approx(2 * 12 * std::numbers::pi));
+}
+
 TEST_CASE("finer and finer solids reach the volume of the exact ones") {
   const double pi = std::numbers::pi;
   CHECK(mass_properties(cylinder(3, 10, 720)).volume_mm3 == Approx(pi * 90).epsilon(1e-4));
   CHECK(mass_properties(cone(3, 10, 720)).volume_mm3 == Approx(pi * 30).epsilon(1e-4));
   CHECK(mass_properties(sphere(3, 200)).volume_mm3 == Approx(pi * 36).epsilon(1e-3));
+  CHECK(mass_properties(extruded(link(), 3.0, 720)).volume_mm3 ==
+        Approx(3 * (12 * 8 + 16 * pi - 4 * pi)).epsilon(1e-4));
+  // The bead, and the ring that the rounded foot lacks, by Pappus's theorem.
+  const double bead = 2 * pi * (5 + 8 / (3 * pi)) * 2 * pi;
+  const double lacking = 2 * pi * (4.5 - (4 + 4 / (3 * pi)) * pi / 4);
+  CHECK(mass_properties(revolved_outline(beaded_pin(), {.per_turn = 720, .per_arc = 180}))
+            .volume_mm3 == Approx(300 * pi + bead - lacking).epsilon(1e-4));
   CHECK(mass_properties(plate_with_holes({100, 80, 10}, hole_grid(2, 2, 40, 5), 720)).volume_mm3 ==
         Approx(80000 - 4 * pi * 250).epsilon(1e-4));
 }

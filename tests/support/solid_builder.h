@@ -96,14 +96,21 @@ class Builder {
 
   void circle_edge(std::uint32_t f, std::uint32_t g, Convexity convexity,
                    const Eigen::Vector3d& center, double radius, std::uint32_t start) {
+    arc_edge(f, g, convexity, center, radius, 2.0 * std::numbers::pi * radius, start, start);
+  }
+
+  /// About z; closed where it starts and ends at one vertex.
+  void arc_edge(std::uint32_t f, std::uint32_t g, Convexity convexity,
+                const Eigen::Vector3d& center, double radius, double length, std::uint32_t start,
+                std::uint32_t end) {
     Edge edge;
     edge.faces = {std::min(f, g), std::max(f, g)};
     edge.convexity = convexity;
     edge.curve = CurveKind::Circle;
-    edge.closed = true;
-    edge.length_mm = 2.0 * std::numbers::pi * radius;
+    edge.closed = start == end;
+    edge.length_mm = length;
     edge.start = solid_.vertices[start];
-    edge.end = edge.start;
+    edge.end = solid_.vertices[end];
     edge.center = center;
     edge.axis = Eigen::Vector3d::UnitZ();
     edge.radius_mm = radius;
