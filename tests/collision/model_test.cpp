@@ -104,7 +104,7 @@ TEST_CASE("the tree finds what brute force finds", "[property]") {
     const Eigen::Vector3d p = random.point(60) + Eigen::Vector3d(0, 0, 30);
     const NearestPoint fast = model.nearest(p);
     const NearestPoint slow = model.nearest_brute_force(p);
-    REQUIRE(fast.distance_mm == slow.distance_mm);
+    REQUIRE(std::abs(fast.distance_mm - slow.distance_mm) < 1e-12);  // rounding of a node's box
   }
 }
 
