@@ -32,7 +32,7 @@ namespace {
 #ifdef DOWEL_SANITIZED
 constexpr std::uint64_t kSeeds = 8;
 #else
-constexpr std::uint64_t kSeeds = 60;
+constexpr std::uint64_t kSeeds = 45;
 #endif
 constexpr testing::SeedRange kLong{1'000, 2'000};
 constexpr int kMotions = 4;  // of each pair
