@@ -33,7 +33,9 @@ class LayeredProjection {
 
   /// Ids whose boxes overlap `box` (closed: touching counts), sorted, into `found` (cleared first).
   /// Boxes are kept in single precision, rounded outwards: one that misses by no more than that may
-  /// be among them. No allocation once `found` and the model have seen their largest query.
+  /// be among them. A box without end along x and y asks by layer, along z by column, and one with
+  /// an end along a single axis by interval. No allocation once `found` and the model have seen
+  /// their largest query.
   void query(const Aabb& box, std::vector<std::uint32_t>& found);
 
   /// The same answer by looking at every box. Reference for tests.
