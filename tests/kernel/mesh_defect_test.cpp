@@ -1,6 +1,7 @@
 #include "dowel/kernel/mesh_defect.h"
 
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,8 @@
 
 #include "dowel/kernel/mass_properties.h"
 #include "dowel/kernel/tolerance.h"
+#include "outline.h"
+#include "outlined_solids.h"
 #include "solids.h"
 
 namespace {
@@ -37,17 +40,18 @@ std::string defect_of(const FacetedSolid& solid) {
 
 TEST_CASE("a fillet that is smaller than its facets are off is no defect, but inside out") {
   // The chords of an eighth of a turn are 0.76 mm off the rim, beyond the axis of the tube.
-  for (const std::size_t corner : {std::size_t{1}, std::size_t{2}}) {
-    for (const std::uint32_t bands : {1U, 3U}) {
-      FacetedSolid pin =
-          revolved_with_fillet({{0, 0}, {10, 0}, {10, 20}, {0, 20}}, corner, 0.5, bands, 8);
-      CAPTURE(corner, bands);
-      CHECK(defect_of(pin) == "none");
-      for (Face& face : pin.faces) {
-        if (std::holds_alternative<TorusSurface>(face.surface)) face.reversed = !face.reversed;
-      }
-      CHECK_THAT(defect_of(pin), Catch::Contains("outside where its triangles have their inside"));
+  constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
+  const Outline low = {{0, 0}, {9.5, 0, kQuarterTurn}, {10, 0.5}, {10, 20}, {0, 20}};
+  const Outline high = {{0, 0}, {10, 0}, {10, 19.5, kQuarterTurn}, {9.5, 20}, {0, 20}};
+  for (const Outline& outline : {low, high}) {
+    Facets facets;
+    facets.per_turn = 8;
+    FacetedSolid pin = revolved_outline(outline, facets);
+    CHECK(defect_of(pin) == "none");
+    for (Face& face : pin.faces) {
+      if (std::holds_alternative<TorusSurface>(face.surface)) face.reversed = !face.reversed;
     }
+    CHECK_THAT(defect_of(pin), Catch::Contains("outside where its triangles have their inside"));
   }
 }
 
