@@ -175,6 +175,7 @@ std::vector<Eigen::Vector3d> CollisionModel::build_triangles(
       t.normal.normalize();
     }
     t.slack_mm = is_exact(face) && !is_plane(face.surface) ? face.facet_error_mm : 0.0;
+    if (is_coarse(face)) t.slack_mm = std::max(t.slack_mm, coarse_reach_mm(face, t));
     const bool is_flat = is_plane(face.surface);
     reaches[i] = inner_reach(face, t.slack_mm);
     if (!is_exact(face)) max_unknown_mm_ = std::max(max_unknown_mm_, face.facet_error_mm);

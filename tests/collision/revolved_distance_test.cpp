@@ -38,6 +38,11 @@ const Outline kRoundedFoot{{0, 0}, {6, 0, kQuarterTurn}, {10, 4}, {10, 30}, {0, 
 const Outline kRoundedHead{{0, 0}, {10, 0}, {10, 28, kQuarterTurn}, {8, 30}, {0, 30}};
 const Outline kFillet{{0, 0}, {14, 0}, {14, 6}, {8, 6, -kQuarterTurn}, {6, 8}, {6, 25}, {0, 25}};
 
+// Smaller than the chords of their rims are off.
+const Outline kBrokenEdge{{0, 0}, {9.7, 0, kQuarterTurn}, {10, 0.3}, {10, 20}, {0, 20}};
+const Outline kTinyFillet{{0, 0},   {14, 0}, {14, 6}, {6.2, 6, -kQuarterTurn},
+                          {6, 6.2}, {6, 25}, {0, 25}};
+
 /// By a place of `piece` at the angle `angle_rad` about the axis, as near as `reach_mm`.
 Eigen::Vector3d point_by(testing::RandomGeometry& random, const testing::OutlinePiece& piece,
                          double share, double angle_rad, double reach_mm) {
@@ -51,8 +56,9 @@ Eigen::Vector3d point_by(testing::RandomGeometry& random, const testing::Outline
 
 TEST_CASE("the distance from coarse solids of revolution is that from their profile",
           "[property]") {
-  const auto profile = GENERATE(kConicalSeat, kConicalHead, kChamferedPin, kCollar, kFlatCone,
-                                kCounterbore, kRoundedFoot, kRoundedHead, kFillet);
+  const auto profile =
+      GENERATE(kConicalSeat, kConicalHead, kChamferedPin, kCollar, kFlatCone, kCounterbore,
+               kRoundedFoot, kRoundedHead, kFillet, kBrokenEdge, kTinyFillet);
   const auto segments = GENERATE(8U, 11U, 12U, 16U, 24U, 31U);
   const auto per_arc = GENERATE(2U, 5U);
   CAPTURE(profile.size(), profile[1].x, segments, per_arc);
