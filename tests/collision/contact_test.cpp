@@ -203,7 +203,7 @@ TEST_CASE("a pin in its hole is judged by the exact cylinders, not by the facets
     }
   }
   CAPTURE(seen[Verdict::Clear], seen[Verdict::Contact], seen[Verdict::Interference]);
-  for (const auto& [verdict, count] : seen) CHECK(count > kPins);
+  for (const auto& [verdict, count] : seen) CHECK(count > kPins / 2);
   CHECK(seen.size() == 3);
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("a pin tilts in its bore until it jams, by the exact cylinders", "[pro
     }
   }
   CAPTURE(seen[Verdict::Clear], seen[Verdict::Contact], seen[Verdict::Interference]);
-  for (const auto& [verdict, count] : seen) CHECK(count > kPins / 2);
+  for (const auto& [verdict, count] : seen) CHECK(count > kPins / 4);
   CHECK(seen.size() == 3);
 }
 

@@ -38,7 +38,7 @@ namespace testing = dowel::testing;
 namespace {
 
 #ifdef DOWEL_SANITIZED
-constexpr std::uint64_t kModels = 8;
+constexpr std::uint64_t kModels = 40;
 constexpr std::uint64_t kPairs = 8;
 constexpr std::uint64_t kSweeps = 8;
 #else
