@@ -133,11 +133,20 @@ bool Judge::take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v) {
   if (fitted.gap_mm > options_.tolerance_mm) {
     result_.gap_mm = fitted.gap_mm;
     is_decided_ = true;
-  } else if (fitted.gap_is_met) {
-    touch(std::max(fitted.gap_mm, 0.0), place_B);
+  } else if (const auto gap_mm = fitted.gap_is_met ? gap_at(place_B) : std::nullopt) {
+    touch(*gap_mm, place_B);
     is_decided_ = true;
   }
   return true;
+}
+
+std::optional<double> Judge::gap_at(const Eigen::Vector3d& place_B) const {
+  const auto outside_mm = [](const NearestPoint& near) {
+    return near.inside ? 0.0 : near.distance_mm;
+  };
+  const double gap_mm =
+      outside_mm(pair_.a.nearest(X_AB_ * place_B)) + outside_mm(pair_.b.nearest(place_B));
+  return gap_mm <= options_.tolerance_mm ? std::optional(gap_mm) : std::nullopt;
 }
 
 std::span<const ThreadRelief> Judge::reliefs_A() {

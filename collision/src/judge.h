@@ -86,6 +86,10 @@ class Judge {
 
   bool take_fit(bool shaft_is_in_a, std::uint32_t s, std::uint32_t v);
 
+  /// How far a place is from both bodies, where it is no more than the tolerance: the end of a
+  /// tilted shaft is short of the heights that its steps tell.
+  std::optional<double> gap_at(const Eigen::Vector3d& place_B) const;
+
   /// Whether a witness of interference is found from where a shaft is too thick for its bore.
   bool is_deep_at(const Eigen::Vector3d& place_B);
 
