@@ -31,14 +31,6 @@ inline bool is_exact(const Face& face) {
   return !std::holds_alternative<OtherSurface>(face.surface);
 }
 
-/// Whether facets are so far off the tube of a torus that its normals miss them, as at fillets that
-/// are smaller than the chords of their rims are off. Then angles tell which facet a place belongs
-/// to.
-bool is_coarse(const Face& face);
-
-/// How far the part of a coarse face for which a facet stands may be from the facet.
-double coarse_reach_mm(const Face& face, const ModelTriangle& t);
-
 /// Whether a plane and a face of revolution that meet smoothly do so along a circle.
 bool blend_in_circle(const Face& f, const Face& g);
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "coarse_torus.h"
 #include "dowel/kernel/check.h"
 #include "dowel/kernel/error.h"
 #include "dowel/kernel/mesh_defect.h"
