@@ -127,20 +127,14 @@ TEST_CASE("a fine ball in a coarse one interferes as deep as they are", "[proper
     // Facets of the large one are off by hundreds of tolerances.
     const double radius = random.uniform(40, 90);
     const double small = random.uniform(2, 5);
-    const ContactCase c{"",
-                        testing::sphere(small, 24 + random.index(24)),
-                        testing::sphere(radius, 10 + random.index(8)),
-                        {}};
     const auto at = [&](double depth) {
       return Pose::from_translation((radius + small - depth) * random.direction());
     };
+    const ContactCase c{"", testing::sphere(small, 24 + random.index(24)),
+                        testing::sphere(radius, 10 + random.index(8)), at, true};
     CAPTURE(i, radius, small);
     PlacedCase placed(c);
-    const Pose X_WB = random.pose(1000);
-    CHECK(placed.at(at(-1.1 * t), X_WB, t) == Verdict::Clear);
-    CHECK(placed.at(at(0.9 * t), X_WB, t) == Verdict::Contact);
-    CHECK(placed.at(at(1.1 * t), X_WB, t) == Verdict::Interference);
-    CHECK(placed.at(at(2.0 * t), X_WB, t) == Verdict::Interference);
+    check_thresholds(c, placed, t, random.pose(1000));
   }
 }
 
@@ -151,22 +145,16 @@ TEST_CASE("a tip in a coarse ball interferes as deep as they are", "[property]")
     const double radius = random.uniform(20, 60);
     const double half_angle = random.uniform(0.3, 1.2);
     const double height = random.uniform(2, 10);
-    const ContactCase c{"",
-                        testing::cone(height * std::tan(half_angle), height, 24),
-                        testing::sphere(radius, 10 + random.index(8)),
-                        {}};
     const Eigen::Vector3d axis = random.direction();
     const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -axis);
     const auto at = [&](double depth) {
       return Pose(turn, (radius + height - testing::tip_height_mm(depth, half_angle)) * axis);
     };
+    const ContactCase c{"", testing::cone(height * std::tan(half_angle), height, 24),
+                        testing::sphere(radius, 10 + random.index(8)), at, true};
     CAPTURE(i, radius, half_angle, height);
     PlacedCase placed(c);
-    const Pose X_WB = random.pose(1000);
-    CHECK(placed.at(at(-1.1 * t), X_WB, t) == Verdict::Clear);
-    CHECK(placed.at(at(0.9 * t), X_WB, t) == Verdict::Contact);
-    CHECK(placed.at(at(1.1 * t), X_WB, t) == Verdict::Interference);
-    CHECK(placed.at(at(2.0 * t), X_WB, t) == Verdict::Interference);
+    check_thresholds(c, placed, t, random.pose(1000));
   }
 }
 
